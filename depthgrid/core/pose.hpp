@@ -1,0 +1,24 @@
+// Rigid transforms. T_A_B maps coordinates in frame B to frame A: p_A = T_A_B * p_B. Metres.
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace depthgrid {
+
+using Pose = Eigen::Isometry3d;
+
+/// The largest deviation of any entry of R^T R from the identity that is still repaired.
+inline constexpr double kRotationTolerance = 1e-3;
+
+/// Builds T_A_B from a 4x4 homogeneous matrix in metres. The rotation is replaced by the nearest
+/// orthonormal one if it deviates by at most kRotationTolerance. `name` is used in messages only.
+/// Throws Error on a non-finite entry, a last row other than (0 0 0 1), a worse deviation or a reflection.
+Pose pose_from_matrix(const Eigen::Matrix4d& matrix, const char* name = "pose");
+
+/// Camera pose T_world_camera (x right, y down, z forward) of a camera at `position_world` that looks
+/// at `target_world`, with the image's up direction as near to `up_world` as possible. Metres.
+/// Throws Error when the viewing direction vanishes or is parallel to `up_world`.
+Pose look_at(const Eigen::Vector3d& position_world, const Eigen::Vector3d& target_world,
+             const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ());
+
+}  // namespace depthgrid

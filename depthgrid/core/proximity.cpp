@@ -1,0 +1,38 @@
+#include "depthgrid/core/proximity.hpp"
+
+#include <algorithm>
+
+namespace depthgrid {
+
+std::string_view to_string(ProximityState state) noexcept {
+  switch (state) {
+    case ProximityState::not_evaluated:
+      return "not_evaluated";
+    case ProximityState::measured:
+      return "measured";
+    case ProximityState::occluded:
+      return "occluded";
+    case ProximityState::unmeasured:
+      return "unmeasured";
+    case ProximityState::unobserved:
+      return "unobserved";
+    case ProximityState::outside:
+      return "outside";
+    case ProximityState::beyond_rho:
+      return "beyond_rho";
+  }
+  return "invalid";
+}
+
+bool has_distance(const Proximity& answer) noexcept {
+  return answer.state != ProximityState::not_evaluated && answer.state != ProximityState::outside;
+}
+
+double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max_m_s) noexcept {
+  if (!has_distance(answer) || !(elapsed_s >= 0) || !(v_max_m_s >= 0)) {
+    return Proximity::kNaN;
+  }
+  return std::max(0.0, answer.distance_m - v_max_m_s * elapsed_s);
+}
+
+}  // namespace depthgrid

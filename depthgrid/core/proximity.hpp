@@ -1,0 +1,51 @@
+// The answer: how far a point is from what the cameras see and from what they cannot see.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace depthgrid {
+
+/// What stands at the nearest point. Never encoded in the distance.
+enum class ProximityState : std::uint8_t {
+  not_evaluated,  ///< nobody asked yet: distance is NaN
+  measured,       ///< a camera measured a surface there
+  occluded,       ///< behind a measured surface for every camera that looks there (the gray area)
+  unmeasured,     ///< some camera looks there but has no measurement (invalid pixel, blind zone)
+  unobserved,     ///< no camera looks there
+  outside,        ///< the point itself lies outside the space of interest: distance is NaN
+  beyond_rho,     ///< nothing within rho: distance is rho, a lower bound; there is no nearest point
+};
+
+/// The state's name as it stands in CSV and JSON, for instance "beyond_rho".
+[[nodiscard]] std::string_view to_string(ProximityState state) noexcept;
+
+/// Distance from a point to the nearest obstacle: metres, world frame.
+struct Proximity {
+  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+  /// Metres, >= 0. rho at beyond_rho; NaN at not_evaluated and outside.
+  double distance_m = kNaN;
+  /// The obstacle's nearest point; NaN where there is none.
+  Eigen::Vector3d nearest_world = Eigen::Vector3d::Constant(kNaN);
+  /// Unit vector from the point to the obstacle (equation (10)); a repulsion needs the opposite sign. Zero when the
+  /// point lies in the obstacle, NaN where there is no nearest point.
+  Eigen::Vector3d direction_world = Eigen::Vector3d::Constant(kNaN);
+  ProximityState state = ProximityState::not_evaluated;
+  /// The camera that measured the nearest point (index in the rig); only at `measured`.
+  std::optional<std::uint16_t> camera;
+  bool stale = false;   ///< a frame behind this answer is older than allowed
+  bool budget = false;  ///< the evaluation stopped early: distance_m is a valid lower bound, not the distance
+};
+
+/// True when distance_m is a number: every state but not_evaluated and outside.
+[[nodiscard]] bool has_distance(const Proximity& answer) noexcept;
+
+/// The bound on the distance `elapsed_s` seconds after the exposure when obstacles move at most at `v_max_m_s`:
+/// max(0, D - v_max t). NaN where the answer has no distance or elapsed_s is negative or NaN.
+[[nodiscard]] double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max_m_s) noexcept;
+
+}  // namespace depthgrid

@@ -1,0 +1,43 @@
+#include "depthgrid/core/rig.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid {
+
+void validate(const Rig& rig) {
+  if (rig.cameras.empty()) {
+    fail("rig '", rig.name, "': has no camera, needs at least one");
+  }
+  std::set<std::string> ids;
+  for (const RigCamera& camera : rig.cameras) {
+    if (camera.id.empty()) {
+      fail("rig '", rig.name, "': a camera has an empty id");
+    }
+    if (!ids.insert(camera.id).second) {
+      fail("rig '", rig.name, "': camera id '", camera.id, "' occurs twice, ids must be distinct");
+    }
+    const std::string name = "camera '" + camera.id + "'";
+    validate(camera.intrinsics, name.c_str());
+    validate(camera.rule, name.c_str());
+    if (!(std::isfinite(camera.metres_per_unit) && camera.metres_per_unit > 0)) {
+      fail(name, ": metres_per_unit is ", camera.metres_per_unit, ", must be a positive finite number");
+    }
+    pose_from_matrix(camera.T_world_camera.matrix(), (name + ": T_world_camera").c_str());
+  }
+}
+
+std::size_t camera_index(const Rig& rig, const std::string& id) {
+  std::string known;
+  for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
+    if (rig.cameras[k].id == id) {
+      return k;
+    }
+    known += (k == 0 ? "" : ", ") + rig.cameras[k].id;
+  }
+  fail("rig '", rig.name, "': there is no camera '", id, "', its cameras are ", known);
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,38 @@
+// A rig: calibrated depth cameras in one world frame.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/core/depth_image.hpp"
+#include "depthgrid/core/distortion.hpp"
+#include "depthgrid/core/pose.hpp"
+
+namespace depthgrid {
+
+/// One calibrated depth camera. The intrinsics are in the pixel-edge convention.
+struct RigCamera {
+  std::string id;
+  PinholeCamera intrinsics;
+  Distortion distortion;
+  double metres_per_unit = 0.001;  ///< of 16-bit depth images
+  MeasurementRule rule;
+  Pose T_world_camera = Pose::Identity();
+};
+
+/// Cameras with distinct ids. T_floor_world maps world to a frame with z up and z = 0 on the floor.
+struct Rig {
+  std::string name;
+  std::vector<RigCamera> cameras;
+  std::optional<Pose> T_floor_world;
+};
+
+/// Throws Error unless there is at least one camera, ids are non-empty and distinct and every camera is valid.
+void validate(const Rig& rig);
+
+/// Index of the camera called `id`. Throws Error that lists the ids there are.
+std::size_t camera_index(const Rig& rig, const std::string& id);
+
+}  // namespace depthgrid

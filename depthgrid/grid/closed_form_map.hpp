@@ -1,0 +1,110 @@
+// The relation between a cell of the depth grid and the pixels of a secondary camera, computed instead of stored.
+//
+// Along the ray of principal pixel (u, v) the projection into a secondary camera is q(d) = d A + B with A = K R r and
+// B = K t; pixel = (q_x / q_z, q_y / q_z) and depth = q_z. A is affine in u and v, so a ray costs six multiply-adds.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/core/pose.hpp"
+#include "depthgrid/grid/depth_grid.hpp"
+
+namespace depthgrid::grid {
+
+/// A camera of the rig other than the principal one.
+struct SecondaryCamera {
+  PinholeCamera camera;
+  Pose T_secondary_principal = Pose::Identity();
+};
+
+/// A pixel of a secondary camera that monitors a cell, and d_start, the smallest depth of the cell in that camera.
+struct CellPixel {
+  int u_px = 0;
+  int v_px = 0;
+  float d_start_m = 0;
+};
+
+/// What a secondary camera says of a cell.
+enum class Confirmation : std::uint8_t {
+  not_involved,  ///< the cell does not project into its image, or reaches behind it
+  confirmed,     ///< it measures something in front of the cell, or has no measurement there
+  denied,        ///< it sees past the front of the cell
+};
+
+/// The letter's test: the camera confirms an obstacle when its depth in that pixel is smaller than d_start. A pixel
+/// without measurement (0) frees nothing, so it confirms as well.
+[[nodiscard]] inline Confirmation confirm(float measured_m, float d_start_m) noexcept {
+  return measured_m < d_start_m ? Confirmation::confirmed : Confirmation::denied;
+}
+
+/// Map storage that needs no memory. Immutable after construction.
+class ClosedFormMap {
+ public:
+  /// Depth limits and centres of the cells in single precision, shared by all rays.
+  struct Cells {
+    std::vector<float> boundary_m;  ///< count + 1
+    std::vector<float> centre_m;    ///< count
+  };
+
+  /// One principal pixel seen from one secondary camera.
+  class Ray {
+   public:
+    /// The pixel that contains the projection of the cell's centre. False when that is outside the image or the cell
+    /// reaches behind the camera. 0 <= n < count.
+    [[nodiscard]] bool pixel(int n, CellPixel& result) const noexcept {
+      const float centre_m = cells_->centre_m[static_cast<std::size_t>(n)];
+      const float front_m = cells_->boundary_m[static_cast<std::size_t>(n + front_shift_)];
+      const float d_start_m = front_m * a_z_smallest_ + b_z_;
+      if (!(d_start_m > 0.0F)) {
+        return false;
+      }
+      const float inverse = 1.0F / (centre_m * a_z_ + b_z_);
+      const float x_px = (centre_m * a_x_ + b_x_) * inverse;
+      const float y_px = (centre_m * a_y_ + b_y_) * inverse;
+      if (!(x_px >= 0.0F && y_px >= 0.0F && x_px < width_px_ && y_px < height_px_)) {
+        return false;
+      }
+      result = {static_cast<int>(x_px), static_cast<int>(y_px), d_start_m};
+      return true;
+    }
+
+    /// The letter's confirmation by this camera; `depth_m` is its dense depth image (0 = no measurement).
+    [[nodiscard]] Confirmation confirm(int n, const float* depth_m) const noexcept {
+      CellPixel p;
+      if (!pixel(n, p)) {
+        return Confirmation::not_involved;
+      }
+      return grid::confirm(depth_m[p.v_px * static_cast<int>(width_px_) + p.u_px], p.d_start_m);
+    }
+
+   private:
+    friend class ClosedFormMap;
+    const Cells* cells_ = nullptr;
+    float a_x_ = 0, a_y_ = 0, a_z_ = 0, a_z_smallest_ = 0;
+    float b_x_ = 0, b_y_ = 0, b_z_ = 0;
+    float width_px_ = 0, height_px_ = 0;
+    int front_shift_ = 0;  ///< 1 where the cell's far end is the one nearer to the secondary camera
+  };
+
+  /// Throws Error when a secondary camera's intrinsics are invalid or its pose is not finite.
+  ClosedFormMap(const DepthGrid& grid, std::span<const SecondaryCamera> secondaries);
+
+  [[nodiscard]] std::size_t camera_count() const noexcept { return cameras_.size(); }
+  /// (u, v) is a pixel of the principal camera, k < camera_count(). The ray refers to this map.
+  [[nodiscard]] Ray ray(int u, int v, std::size_t k) const noexcept;
+
+ private:
+  struct Camera {
+    float a[3][3];  ///< A = a[.][0] + u a[.][1] + v a[.][2] at the pixel's centre
+    float b[3];
+    float half_spread_z;  ///< largest deviation of A_z inside the pixel
+    float width_px, height_px;
+  };
+  Cells cells_;
+  std::vector<Camera> cameras_;
+};
+
+}  // namespace depthgrid::grid
