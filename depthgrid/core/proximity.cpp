@@ -1,6 +1,7 @@
 #include "depthgrid/core/proximity.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace depthgrid {
 
@@ -25,7 +26,7 @@ std::string_view to_string(ProximityState state) noexcept {
 }
 
 bool has_distance(const Proximity& answer) noexcept {
-  return answer.state != ProximityState::not_evaluated && answer.state != ProximityState::outside;
+  return !std::isnan(answer.distance_m);
 }
 
 double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max_m_s) noexcept {

@@ -16,7 +16,8 @@ enum class ProximityState : std::uint8_t {
   occluded,       ///< behind a measured surface for every camera that looks there (the gray area)
   unmeasured,     ///< some camera looks there but has no measurement (invalid pixel, blind zone)
   unobserved,     ///< no camera looks there
-  outside,        ///< the point itself lies outside the space of interest: distance is NaN
+  outside,        ///< the space outside the space of interest: its border is nearest where that space counts as
+                  ///< obstacle; where it is ignored the point itself lies outside and has no distance (NaN)
   beyond_rho,     ///< nothing within rho: distance is rho, a lower bound; there is no nearest point
 };
 
@@ -27,7 +28,7 @@ enum class ProximityState : std::uint8_t {
 struct Proximity {
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-  /// Metres, >= 0. rho at beyond_rho; NaN at not_evaluated and outside.
+  /// Metres, >= 0. rho at beyond_rho; NaN at not_evaluated, and at outside where outside space is ignored.
   double distance_m = kNaN;
   /// The obstacle's nearest point; NaN where there is none.
   Eigen::Vector3d nearest_world = Eigen::Vector3d::Constant(kNaN);
@@ -37,11 +38,14 @@ struct Proximity {
   ProximityState state = ProximityState::not_evaluated;
   /// The camera that measured the nearest point (index in the rig); only at `measured`.
   std::optional<std::uint16_t> camera;
+  /// Distance from the point to the border of the space of interest where the space outside is ignored: obstacles
+  /// farther away than this may be missing from the answer. NaN where it does not apply.
+  double known_to_m = kNaN;
   bool stale = false;   ///< a frame behind this answer is older than allowed
   bool budget = false;  ///< the evaluation stopped early: distance_m is a valid lower bound, not the distance
 };
 
-/// True when distance_m is a number: every state but not_evaluated and outside.
+/// True when distance_m is a number.
 [[nodiscard]] bool has_distance(const Proximity& answer) noexcept;
 
 /// The bound on the distance `elapsed_s` seconds after the exposure when obstacles move at most at `v_max_m_s`:

@@ -1,0 +1,137 @@
+#include "depthgrid/core/margin.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid {
+namespace {
+
+constexpr int kLargestLateralReach = 16;
+
+void check_part(const char* name, const char* part, double value, const char* unit) {
+  if (!(std::isfinite(value) && value >= 0)) {
+    fail(name, ": ", part, " is ", value, unit, ", must be a finite number that is not negative");
+  }
+}
+
+/// The largest float that does not exceed a value >= 0; values below 1e-30 (and NaN) become 0. Clearing the bits of
+/// the mantissa that a float does not have truncates, after which the conversion is exact; unlike a change of the
+/// rounding mode this vectorises.
+inline float round_towards_zero(double value) noexcept {
+  const double kept = value >= 1e-30 ? value : 0.0;
+  constexpr std::uint64_t kFloatBits = ~((std::uint64_t{1} << 29) - 1);
+  return static_cast<float>(std::bit_cast<double>(std::bit_cast<std::uint64_t>(kept) & kFloatBits));
+}
+
+/// D - m(D), never above the exact value; 0 for no measurement.
+void reduce_row(const float* measured_m, const SensorMargin& margin, int width_px, float* reduced_m) noexcept {
+  const double constant_m = margin.constant_m;
+  const double linear = margin.linear;
+  const double quadratic_per_m = margin.quadratic_per_m;
+  for (int u = 0; u < width_px; ++u) {
+    const double depth_m = static_cast<double>(measured_m[u]);
+    reduced_m[u] = round_towards_zero(depth_m - (constant_m + depth_m * (linear + depth_m * quadratic_per_m)));
+  }
+}
+
+/// Robot pixels get the robot's exit. An exit that is not finite is no exit: the pixel stays what it was.
+void apply_robot_row(const float* measured_m, const float* near_m, const float* far_m, int width_px,
+                     float* reduced_m) noexcept {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  for (int u = 0; u < width_px; ++u) {
+    const bool robot = (measured_m[u] > 0.0F) & (near_m[u] > 0.0F) & (near_m[u] <= reduced_m[u]) &
+                       (measured_m[u] <= far_m[u]) & (far_m[u] <= kLargest);
+    const float exit_m = std::max(reduced_m[u], far_m[u]);
+    reduced_m[u] = robot ? exit_m : reduced_m[u];
+  }
+}
+
+inline void minimum_into(const float* __restrict other, int count, float* __restrict result) noexcept {
+  for (int i = 0; i < count; ++i) {
+    result[i] = std::min(result[i], other[i]);
+  }
+}
+
+/// Minimum over the 2 reach + 1 neighbours in the row; 0 where they leave it.
+void filter_row(const float* source, int width_px, int reach_px, float* result) noexcept {
+  const int inner = width_px - 2 * reach_px;
+  if (inner <= 0) {
+    std::fill_n(result, width_px, 0.0F);
+    return;
+  }
+  std::fill_n(result, reach_px, 0.0F);
+  std::copy_n(source, inner, result + reach_px);
+  for (int offset = 1; offset <= 2 * reach_px; ++offset) {
+    minimum_into(source + offset, inner, result + reach_px);
+  }
+  std::fill_n(result + width_px - reach_px, reach_px, 0.0F);
+}
+
+}  // namespace
+
+void validate(const SensorMargin& margin, const char* name) {
+  check_part(name, "constant", margin.constant_m, " m");
+  check_part(name, "linear", margin.linear, "");
+  check_part(name, "quadratic", margin.quadratic_per_m, " 1/m");
+  if (margin.lateral_px < 0 || margin.lateral_px > kLargestLateralReach) {
+    fail(name, ": lateral reach is ", margin.lateral_px, " px, must be between 0 and ", kLargestLateralReach);
+  }
+}
+
+void validate(const PoseMargin& margin, const char* name) {
+  check_part(name, "translation", margin.translation_m, " m");
+  check_part(name, "rotation", margin.rotation_rad, " rad");
+  check_part(name, "time", margin.time_m, " m");
+}
+
+FreeDepth::FreeDepth(int width_px, int height_px, const SensorMargin& margin)
+    : margin_(margin),
+      reduced_m_(width_px, height_px),
+      row_minimum_m_(width_px, height_px),
+      free_m_(width_px, height_px) {
+  validate(margin);
+}
+
+void FreeDepth::update(const DepthImage& measured, const RobotView& robot) noexcept {
+  const int width_px = free_m_.width_px();
+  const int height_px = free_m_.height_px();
+  const int reach_px = margin_.lateral_px;
+  if (measured.width_px() != width_px || measured.height_px() != height_px) {
+    std::fill_n(free_m_.data(), free_m_.index(0, height_px), 0.0F);
+    return;
+  }
+  DepthImage& reduced_m = reach_px == 0 ? free_m_ : reduced_m_;
+  for (int v = 0; v < height_px; ++v) {
+    const float* measured_m = measured.data() + measured.index(0, v);
+    float* row_m = reduced_m.data() + reduced_m.index(0, v);
+    reduce_row(measured_m, margin_, width_px, row_m);
+    if (robot.near_m != nullptr) {
+      apply_robot_row(measured_m, robot.near_m + v * robot.stride_px, robot.far_m + v * robot.stride_px, width_px,
+                      row_m);
+    }
+    if (reach_px > 0) {
+      filter_row(row_m, width_px, reach_px, row_minimum_m_.data() + row_minimum_m_.index(0, v));
+    }
+  }
+  if (reach_px == 0) {
+    return;
+  }
+  for (int v = 0; v < height_px; ++v) {
+    float* result_m = free_m_.data() + free_m_.index(0, v);
+    if (v < reach_px || v >= height_px - reach_px) {
+      std::fill_n(result_m, width_px, 0.0F);
+      continue;
+    }
+    std::copy_n(row_minimum_m_.data() + row_minimum_m_.index(0, v - reach_px), width_px, result_m);
+    for (int other = v - reach_px + 1; other <= v + reach_px; ++other) {
+      minimum_into(row_minimum_m_.data() + row_minimum_m_.index(0, other), width_px, result_m);
+    }
+  }
+}
+
+}  // namespace depthgrid
