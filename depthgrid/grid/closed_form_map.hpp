@@ -47,6 +47,7 @@ class ClosedFormMap {
   struct Cells {
     std::vector<float> boundary_m;  ///< count + 1
     std::vector<float> centre_m;    ///< count
+    bool operator==(const Cells&) const = default;
   };
 
   /// One principal pixel seen from one secondary camera.
@@ -95,6 +96,10 @@ class ClosedFormMap {
   [[nodiscard]] std::size_t camera_count() const noexcept { return cameras_.size(); }
   /// (u, v) is a pixel of the principal camera, k < camera_count(). The ray refers to this map.
   [[nodiscard]] Ray ray(int u, int v, std::size_t k) const noexcept;
+  /// Equal maps give equal answers in every cell.
+  [[nodiscard]] bool operator==(const ClosedFormMap& other) const noexcept {
+    return cells_ == other.cells_ && cameras_ == other.cameras_;
+  }
 
  private:
   struct Camera {
@@ -102,6 +107,7 @@ class ClosedFormMap {
     float b[3];
     float half_spread_z;  ///< largest deviation of A_z inside the pixel
     float width_px, height_px;
+    bool operator==(const Camera&) const = default;
   };
   Cells cells_;
   std::vector<Camera> cameras_;
