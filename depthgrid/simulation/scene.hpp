@@ -8,28 +8,9 @@
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/pose.hpp"
+#include "depthgrid/simulation/shapes.hpp"
 
 namespace depthgrid::simulation {
-
-/// Half space { x : normal . x <= offset_m } is solid. World frame.
-struct Plane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit
-  double offset_m = 0;
-};
-struct Box {
-  Pose T_world_box = Pose::Identity();  ///< centre and axes
-  Eigen::Vector3d half_size_m = Eigen::Vector3d::Constant(0.5);
-};
-struct Sphere {
-  Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();
-  double radius_m = 0.1;
-};
-/// All points within radius_m of the segment a-b.
-struct Capsule {
-  Eigen::Vector3d a_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d b_world = Eigen::Vector3d::UnitZ();
-  double radius_m = 0.1;
-};
 
 /// Whether a primitive is an obstacle or belongs to the robot.
 enum class Body : std::uint8_t { obstacle, robot };
@@ -44,9 +25,11 @@ struct View {
 /// Nearest surface point of the obstacles.
 struct SceneDistance {
   double distance_m = 0;  ///< to the surface; 0 inside an obstacle; infinite when there is none
+  /// The point itself inside an obstacle; NaN when there is no obstacle.
   Eigen::Vector3d nearest_world = Eigen::Vector3d::Zero();
 };
 
+/// Const members may be called from many threads at once.
 class Scene {
  public:
   /// Throws Error on a non-finite number, a non-positive size or a normal that is not of unit length.
@@ -55,13 +38,20 @@ class Scene {
   void add(const Sphere& sphere, Body body = Body::obstacle);
   void add(const Capsule& capsule, Body body = Body::obstacle);
 
-  /// Ideal depth camera: z of the nearest surface along the ray through each pixel's centre. With `robot` the padded
-  /// robot's interval is rendered too (each robot primitive grown by robot_padding_m).
+  /// Ideal depth camera: z of the nearest surface along the ray through each pixel's centre, which is (u + 0.5, v +
+  /// 0.5) in continuous image coordinates; rounded to the nearest float. With `robot` bodies the padded robot's
+  /// interval is rendered too (each robot primitive grown by robot_padding_m): the merged intervals of all its
+  /// primitives, up to the first gap. A camera inside or on the surface of a solid measures nothing: depth 0
+  /// everywhere; one inside the padding of the robot only sees a robot interval that starts at the smallest positive
+  /// float. robot_far_m may be infinite. Throws Error when the camera is invalid or the padding negative or not finite.
   [[nodiscard]] View render(const PinholeCamera& camera, const Pose& T_world_camera,
                             double robot_padding_m = 0.0) const;
 
   /// Exact distance from a point to the obstacles (the robot does not count). Metres, world frame.
   [[nodiscard]] SceneDistance distance(const Eigen::Vector3d& p_world) const noexcept;
+
+  /// Whether the point lies in a solid of this body, surfaces included.
+  [[nodiscard]] bool contains(const Eigen::Vector3d& p_world, Body body) const noexcept;
 
  private:
   template <class Shape>
@@ -69,6 +59,10 @@ class Scene {
     Shape shape;
     Body body;
   };
+  /// Calls visit(shape, body) for every primitive.
+  template <class Visit>
+  void for_each(Visit&& visit) const;
+
   std::vector<Item<Plane>> planes_;
   std::vector<Item<Box>> boxes_;
   std::vector<Item<Sphere>> spheres_;
