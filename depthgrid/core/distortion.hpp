@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/depth_image.hpp"
@@ -29,22 +30,29 @@ Distortion make_distortion(Distortion::Model model, std::span<const double> coef
 /// Removes the distortion of a depth image. Each pixel of the result is the minimum over all source pixels that its
 /// square touches, and "no measurement" as soon as one of them is none or lies outside the source: never a blend of
 /// two depths, never farther than any of them. The pixel lists are prepared once; apply() does not allocate.
+///
+/// The source pixels of a square form a rectangle that encloses the square's image: the mean value form over the whole
+/// square, so no touched pixel is missed and at worst a neighbour at a corner is added. Squares that lie where the
+/// model folds back (the lens does not image them) are "no measurement".
 class DepthUndistortion {
  public:
   /// `distorted` are the intrinsics of the source image, `undistorted` those of the result (often the same).
-  /// Throws Error when the distortion cannot be evaluated (non-finite) over the result's image.
-  DepthUndistortion(const PinholeCamera& distorted, const Distortion& distortion, const PinholeCamera& undistorted);
+  /// Throws Error when the distortion cannot be evaluated (non-finite) over the result's image, or as validate().
+  DepthUndistortion(const PinholeCamera& distorted, const Distortion& lens, const PinholeCamera& undistorted);
 
-  /// `source` (0 = no measurement) and `result` must have the sizes given to the constructor and be different images.
+  /// `source` (0 = no measurement) and `result` must have the sizes given to the constructor (other sizes give a
+  /// result without measurements) and be different images. Threads may share the object.
   void apply(const DepthImage& source, DepthImage& result) const noexcept;
 
  private:
   struct SourceWindow {
     std::int16_t u_first, v_first, u_last, v_last;  ///< inclusive; u_last < u_first: touches the outside
   };
+  int source_width_px_ = 0;
+  int source_height_px_ = 0;
   int width_px_ = 0;
   int height_px_ = 0;
-  std::vector<SourceWindow> windows_;
+  std::vector<SourceWindow> windows_;  ///< one for each pixel of the result, row-major
 };
 
 }  // namespace depthgrid
