@@ -1,0 +1,37 @@
+// What stands at the nearest point of an answer.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/core/depth_image.hpp"
+#include "depthgrid/core/margin.hpp"
+#include "depthgrid/core/pose.hpp"
+#include "depthgrid/core/proximity.hpp"
+
+namespace depthgrid::grid {
+
+/// One camera as the classification sees it.
+struct ViewingCamera {
+  PinholeCamera camera;
+  Pose T_camera_world;
+  double near_m = 0;
+  const DepthImage* measured_m = nullptr;
+};
+
+struct Classification {
+  ProximityState state = ProximityState::unobserved;
+  std::optional<std::uint16_t> camera;
+};
+
+/// measured if some camera has one of the samples within [D - m - slack, D + m + slack] of its measured depth D (the
+/// nearest such camera is named); else occluded if it is behind a measured surface for some camera; else unmeasured if
+/// a camera looks there without measurement; else unobserved. The samples are points of the nearest cell (world frame);
+/// slack_m is the cell's depth, within which the grid cannot tell surface from shadow.
+[[nodiscard]] Classification classify(std::span<const Eigen::Vector3d> samples_world,
+                                      std::span<const ViewingCamera> cameras, const SensorMargin& margin,
+                                      double slack_m) noexcept;
+
+}  // namespace depthgrid::grid

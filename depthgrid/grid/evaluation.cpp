@@ -1,0 +1,305 @@
+#include "depthgrid/grid/evaluation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/grid/classification.hpp"
+#include "depthgrid/grid/corrected_scan.hpp"
+#include "depthgrid/grid/letter_scan.hpp"
+#include "depthgrid/grid/pixel_order.hpp"
+
+namespace depthgrid::grid {
+
+void validate(const EvaluationSettings& settings) {
+  const auto within = [](const char* name, double value, double low, double high) {
+    if (!(value >= low && value <= high)) {
+      fail("evaluation settings: ", name, " is ", value, ", must be between ", low, " and ", high);
+    }
+  };
+  if (!(std::isfinite(settings.rho_m) && settings.rho_m > 0)) {
+    fail("evaluation settings: rho is ", settings.rho_m, " m, must be a positive finite number");
+  }
+  within("direction_blend", settings.direction_blend, 0, 1);
+  within("repulsion_alpha", settings.repulsion_alpha, 0, 100);
+  if (!(settings.max_frame_age_s >= 0)) {
+    fail("evaluation settings: max_frame_age is ", settings.max_frame_age_s, " s, must not be negative");
+  }
+  depthgrid::validate(settings.sensor);
+  depthgrid::validate(settings.pose);
+}
+
+struct GridEvaluator::State {
+  State(const Rig& rig, std::size_t principal_index, const DepthQuantisation& quantisation,
+        const EvaluationSettings& settings_in, std::shared_ptr<const DepthGridMap> map_in)
+      : settings(settings_in),
+        principal(principal_index),
+        grid(checked_camera(rig, principal_index).intrinsics, quantisation),
+        T_principal_world(rig.cameras[principal_index].T_world_camera.inverse()),
+        map(std::move(map_in)) {
+    validate(rig);
+    grid::validate(settings);
+    if (rig.cameras.size() > kMostSecondaries + 1) {
+      fail("grid evaluator: the rig has ", rig.cameras.size(), " cameras, at most ", kMostSecondaries + 1,
+           " are supported");
+    }
+    const bool corrected = settings.variant == Variant::corrected;
+    const Pose& T_world_principal = rig.cameras[principal].T_world_camera;
+    std::vector<SecondaryCamera> secondaries;
+    for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
+      const RigCamera& camera = rig.cameras[k];
+      if (camera.distortion.model != Distortion::Model::none) {
+        const auto& c = camera.distortion.coefficients;
+        if (std::any_of(c.begin(), c.end(), [](double value) { return value != 0; })) {
+          fail("grid evaluator: camera '", camera.id,
+               "' has lens distortion, its images must be undistorted first and the rig given without distortion");
+        }
+      }
+      observations.emplace_back(camera, corrected ? &settings.sensor : nullptr);
+      const Pose T_camera_principal = camera.T_world_camera.inverse() * T_world_principal;
+      if (k != principal) {
+        secondaries.push_back({camera.intrinsics, T_camera_principal});
+        secondary_index.push_back(k);
+      }
+      carvers.emplace_back(camera.intrinsics, T_camera_principal, camera.rule.near_m, settings.pose);
+      views.push_back({camera.intrinsics, camera.T_world_camera.inverse(), camera.rule.near_m, nullptr});
+    }
+    for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
+      views[k].measured_m = &observations[k].measured_m();
+      if (k != principal || has_pose_margin()) {
+        carving.push_back({&carvers[k], &observations[k].free_m()});
+      }
+    }
+    for (const std::size_t k : secondary_index) {
+      secondary_depths_m.push_back(observations[k].removed_m().data());
+    }
+    principal_near_m = rig.cameras[principal].rule.near_m;
+    if (map) {
+      check_matches(*map, grid, secondaries);
+    } else {
+      map = std::make_shared<const DepthGridMap>(ClosedFormMap(grid, secondaries));
+    }
+  }
+
+  static const RigCamera& checked_camera(const Rig& rig, std::size_t index) {
+    if (index >= rig.cameras.size()) {
+      fail("grid evaluator: principal camera is ", index, ", the rig has ", rig.cameras.size(), " cameras");
+    }
+    return rig.cameras[index];
+  }
+
+  [[nodiscard]] bool has_pose_margin() const noexcept {
+    return settings.pose.translation_m > 0 || settings.pose.rotation_rad > 0 || settings.pose.time_m > 0;
+  }
+
+  [[nodiscard]] ControlPoint into_depth_space(const Eigen::Vector3d& p_world) const noexcept;
+  [[nodiscard]] double signed_border_distance_m(const ControlPoint& point, Eigen::Vector3d& border) const noexcept;
+  [[nodiscard]] PixelWindow surveillance_window(const ControlPoint& point) const noexcept;
+  void scan(const ControlPoint& point, const PixelWindow& window, ObstacleSet& obstacles,
+            EvaluationCount& count) const noexcept;
+  [[nodiscard]] Evaluation answer(const ObstacleSet& obstacles) const noexcept;
+  void limit_to_grid(const ControlPoint& point, double border_m, const Eigen::Vector3d& border_camera,
+                     Evaluation& result) const noexcept;
+
+  EvaluationSettings settings;
+  std::size_t principal;
+  DepthGrid grid;
+  Pose T_principal_world;
+  std::shared_ptr<const DepthGridMap> map;
+  double principal_near_m = 0;
+  std::vector<Observation> observations;  ///< in the rig's order
+  std::vector<std::size_t> secondary_index;
+  std::vector<const float*> secondary_depths_m;
+  std::vector<CellCarver> carvers;
+  std::vector<CarvingCamera> carving;
+  std::vector<ViewingCamera> views;
+  bool stale = false;
+};
+
+GridEvaluator::GridEvaluator(const Rig& rig, std::size_t principal, const DepthQuantisation& quantisation,
+                             const EvaluationSettings& settings, std::shared_ptr<const DepthGridMap> map)
+    : state_(std::make_unique<State>(rig, principal, quantisation, settings, std::move(map))) {}
+GridEvaluator::~GridEvaluator() = default;
+GridEvaluator::GridEvaluator(GridEvaluator&&) noexcept = default;
+GridEvaluator& GridEvaluator::operator=(GridEvaluator&&) noexcept = default;
+
+const DepthGrid& GridEvaluator::grid() const noexcept { return state_->grid; }
+const EvaluationSettings& GridEvaluator::settings() const noexcept { return state_->settings; }
+
+bool GridEvaluator::update(std::span<const Frame> frames) noexcept {
+  bool complete = frames.size() == state_->observations.size();
+  double newest_s = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < state_->observations.size(); ++k) {
+    Observation& observation = state_->observations[k];
+    complete = observation.update(k < frames.size() ? frames[k] : Frame{}) && complete;
+    if (observation.present()) {
+      newest_s = std::max(newest_s, observation.time_s());
+    }
+  }
+  state_->stale = std::any_of(state_->observations.begin(), state_->observations.end(), [&](const Observation& o) {
+    return o.present() && newest_s - o.time_s() > state_->settings.max_frame_age_s;
+  });
+  return complete;
+}
+
+// The main function: section VI of the letter, one call a step.
+Evaluation GridEvaluator::evaluate(const Eigen::Vector3d& p_world, EvaluationCount* count) const noexcept {
+  const State& s = *state_;
+  Evaluation result;
+  if (!p_world.allFinite()) {
+    return result;
+  }
+  const ControlPoint point = s.into_depth_space(p_world);  // (1), (2)
+  Eigen::Vector3d border_camera;
+  const double border_m = s.signed_border_distance_m(point, border_camera);
+  if (border_m > 0) {
+    EvaluationCount local;
+    ObstacleSet obstacles(s.settings.rho_m, s.settings.repulsion_alpha);
+    const PixelWindow window = s.surveillance_window(point);              // (8), (9)
+    s.scan(point, window, obstacles, count != nullptr ? *count : local);  // (i)-(iv) with (5)-(7)
+    result = s.answer(obstacles);                                         // (10), (11)
+  }
+  s.limit_to_grid(point, border_m, border_camera, result);
+  result.nearest.stale = s.stale;
+  return result;
+}
+
+void GridEvaluator::evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Evaluation> answers,
+                             EvaluationCount* count) const noexcept {
+  for (std::size_t i = 0; i < points_world.size() && i < answers.size(); ++i) {
+    answers[i] = evaluate(points_world[i], count);
+  }
+}
+
+ControlPoint GridEvaluator::State::into_depth_space(const Eigen::Vector3d& p_world) const noexcept {
+  ControlPoint point;
+  point.p_camera = T_principal_world * p_world;
+  point.p = project(grid.principal(), point.p_camera);
+  return point;
+}
+
+/// Distance from the point to the border of the grid and the nearest point of it: positive inside, not positive
+/// outside.
+double GridEvaluator::State::signed_border_distance_m(const ControlPoint& point,
+                                                      Eigen::Vector3d& border) const noexcept {
+  const PinholeCamera& c = grid.principal();
+  const Eigen::Vector3d& p = point.p_camera;
+  // Outward normals of the four sides, through the camera's centre, and of the two ends.
+  const std::array<Eigen::Vector3d, 4> sides{Eigen::Vector3d(-c.fx_px, 0, -c.cx_px).normalized(),
+                                             Eigen::Vector3d(c.fx_px, 0, c.cx_px - c.width_px).normalized(),
+                                             Eigen::Vector3d(0, -c.fy_px, -c.cy_px).normalized(),
+                                             Eigen::Vector3d(0, c.fy_px, c.cy_px - c.height_px).normalized()};
+  double smallest = p.z() - grid.d_min_m();
+  border = {p.x(), p.y(), grid.d_min_m()};
+  if (grid.d_max_m() - p.z() < smallest) {
+    smallest = grid.d_max_m() - p.z();
+    border.z() = grid.d_max_m();
+  }
+  for (const Eigen::Vector3d& n : sides) {
+    const double distance = -n.dot(p);
+    if (distance < smallest) {
+      smallest = distance;
+      border = p + distance * n;
+    }
+  }
+  return smallest;
+}
+
+PixelWindow GridEvaluator::State::surveillance_window(const ControlPoint& point) const noexcept {
+  if (settings.window == Window::whole_image) {
+    return whole_image(grid.principal());
+  }
+  return settings.variant == Variant::letter ? printed_window(grid.principal(), point.p, settings.rho_m)
+                                             : sphere_window(grid.principal(), point.p_camera, settings.rho_m);
+}
+
+void GridEvaluator::State::scan(const ControlPoint& point, const PixelWindow& window, ObstacleSet& obstacles,
+                                EvaluationCount& count) const noexcept {
+  const auto visit = [&](auto&& pixel) {
+    if (settings.collect == Collect::hybrid) {
+      visit_all(window, pixel);
+    } else {
+      visit_rings(window, grid.principal(), point, obstacles, pixel);
+    }
+  };
+  if (settings.variant == Variant::corrected) {
+    CorrectedScan scan(grid, observations[principal].free_m(), principal_near_m, has_pose_margin(), carving, settings,
+                       point, obstacles, count);
+    visit([&](int u, int v) { scan.pixel(u, v); });
+    return;
+  }
+  std::visit(
+      [&](const auto& storage) {
+        LetterScan scan(grid, storage, observations[principal], secondary_depths_m, settings, point, obstacles, count);
+        visit([&](int u, int v) { scan.pixel(u, v); });
+      },
+      *map);
+}
+
+Evaluation GridEvaluator::State::answer(const ObstacleSet& obstacles) const noexcept {
+  Evaluation result;
+  Proximity& nearest = result.nearest;
+  nearest.distance_m = obstacles.nearest_m();
+  nearest.state = ProximityState::beyond_rho;
+  if (!obstacles.found()) {
+    return result;
+  }
+  const Pose T_world_principal = T_principal_world.inverse();
+  const Eigen::Vector3d& nearest_camera = obstacles.nearest().point_camera;
+  nearest.nearest_world = T_world_principal * nearest_camera;
+  nearest.direction_world = T_world_principal.linear() * obstacles.nearest().direction_camera;
+
+  // A second sample inside the cell: the nearest point itself lies on a face, where rounding picks the pixel.
+  const int n = std::clamp(grid.cell_of(nearest_camera.z()), 0, grid.count() - 1);
+  const double cell_m = grid.boundary_m(n + 1) - grid.boundary_m(n);
+  const Eigen::Vector3d inside_camera =
+      deproject(grid.principal(), {obstacles.u() + 0.5, obstacles.v() + 0.5, nearest_camera.z()});
+  const std::array<Eigen::Vector3d, 2> samples{T_world_principal * inside_camera, nearest.nearest_world};
+  const SensorMargin margin = settings.variant == Variant::corrected ? settings.sensor : SensorMargin{};
+  const Classification classified = classify(samples, views, margin, cell_m);
+  nearest.state = classified.state;
+  nearest.camera = classified.camera;
+
+  if (settings.collect == Collect::hybrid) {
+    result.obstacle_points = obstacles.count();
+    result.hybrid_direction_world =
+        T_world_principal.linear() * (settings.variant == Variant::letter
+                                          ? obstacles.mean_direction()
+                                          : obstacles.led_direction(settings.direction_blend));
+  }
+  return result;
+}
+
+void GridEvaluator::State::limit_to_grid(const ControlPoint& point, double border_m,
+                                         const Eigen::Vector3d& border_camera, Evaluation& result) const noexcept {
+  Proximity& nearest = result.nearest;
+  const bool inside = border_m > 0;
+  if (settings.outside == OutsideSpace::ignored) {
+    if (inside) {
+      nearest.known_to_m = border_m;
+    } else {
+      nearest.state = ProximityState::outside;
+    }
+    return;
+  }
+  const double distance_m = std::max(border_m, 0.0);
+  if (inside && !(distance_m < nearest.distance_m)) {
+    return;
+  }
+  nearest.distance_m = distance_m;
+  nearest.state = ProximityState::outside;
+  nearest.camera.reset();
+  const Pose T_world_principal = T_principal_world.inverse();
+  nearest.nearest_world = T_world_principal * (inside ? border_camera : point.p_camera);
+  nearest.direction_world = Eigen::Vector3d::Zero();
+  if (inside) {
+    nearest.direction_world = T_world_principal.linear() * (border_camera - point.p_camera).normalized();
+  }
+  if (settings.collect == Collect::hybrid && result.obstacle_points == 0) {
+    result.hybrid_direction_world = nearest.direction_world;
+  }
+}
+
+}  // namespace depthgrid::grid

@@ -1,0 +1,155 @@
+// The scan over the principal camera's pixels as the letter prints it: cases (i)-(iv) of section VI and VII.
+//
+// Known deviations from a bound that never over-estimates, kept on purpose (f = 525 px, rho = 0.4 m, 1 cm cells):
+//  - the printed window is half of what the rho-sphere needs (surveillance_window.hpp);
+//  - (5)-(7) clamp in pixel coordinates: up to 7 mm too far, in case (ii) up to 58 mm, since the obstacle is the whole
+//    shadow behind d_o and not only its front;
+//  - case (iii) orders cells by |j|, that is by depth, not by distance: decimetres too far, off axis;
+//  - d_o < d_start lets a cell that holds the surface itself count as free, so thin things vanish;
+//  - case (iv) starts at the robot, not at the point, and ends at the first confirmed cell.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "depthgrid/grid/depth_grid.hpp"
+#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/observation.hpp"
+#include "depthgrid/grid/obstacle_set.hpp"
+#include "depthgrid/grid/surveillance_window.hpp"
+
+namespace depthgrid::grid {
+
+/// Most secondary cameras of one evaluator.
+inline constexpr std::size_t kMostSecondaries = 31;
+
+/// Scans `window` for one control point. `secondary_depths_m` are the dense images of the secondary cameras.
+template <class Map>
+class LetterScan {
+ public:
+  LetterScan(const DepthGrid& grid, const Map& map, const Observation& principal,
+             std::span<const float* const> secondary_depths_m, const EvaluationSettings& settings,
+             const ControlPoint& point, ObstacleSet& obstacles, EvaluationCount& count) noexcept
+      : grid_(grid),
+        map_(map),
+        principal_(principal),
+        secondary_depths_m_(secondary_depths_m),
+        settings_(settings),
+        point_(point),
+        obstacles_(obstacles),
+        count_(count),
+        cell_of_point_(grid.cell_of(point.p.depth_m)),
+        cells_within_rho_(grid.cell_of(point.p.depth_m + settings.rho_m) - cell_of_point_) {}
+
+  /// One pixel of interest: the case distinction of section VI.
+  void pixel(int u, int v) noexcept {
+    ++count_.pixels;
+    const double d_o = principal_.removed_m().at(u, v);
+    const double d_p = point_.p.depth_m;
+    if (principal_.is_robot()[principal_.removed_m().index(u, v)] != 0) {
+      robot_removed(u, v, d_o);  // (iv)
+    } else if (d_o > d_p + settings_.rho_m || d_o >= grid_.d_max_m()) {
+      return;  // (i), and shadows that begin beyond the grid
+    } else if (d_o >= d_p) {
+      take(u, v, d_o, d_o);  // (ii)
+    } else {
+      behind_surface(u, v, d_o);  // (iii); without measurement d_o is 0: everything on the ray needs confirmation
+    }
+  }
+
+ private:
+  /// (iii): from the cell at the point's depth outwards in both directions until an obstacle is confirmed. Cells
+  /// farther than rho in depth cannot give a distance below rho, so the printed lower end floor((d_o - d_p) / dd)
+  /// is cut there.
+  void behind_surface(int u, int v, double d_o) noexcept {
+    ++count_.gray_pixels;
+    begin_column(u, v);
+    const int last = std::min(cell_of_point_ + cells_within_rho_, grid_.count() - 1);
+    const int surface = cell_of_point_ + lower_end(d_o);
+    const int first = std::max({surface, cell_of_point_ - cells_within_rho_ - 1, 0});
+    for (int j = 0; cell_of_point_ + j <= last || cell_of_point_ - j >= first; ++j) {
+      bool found = false;
+      for (const int n : {cell_of_point_ + j, cell_of_point_ - j}) {
+        if (n >= first && n <= last) {
+          ++count_.cells;
+          if (confirmed(n)) {
+            found = true;
+            take(u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1));
+          }
+        }
+        if (j == 0) {
+          break;
+        }
+      }
+      if (found) {
+        return;
+      }
+    }
+  }
+
+  /// (iv): the robot excludes obstacles up to its far end d_r; the cells behind it need confirmation.
+  void robot_removed(int u, int v, double d_r) noexcept {
+    ++count_.gray_pixels;
+    begin_column(u, v);
+    const int robot = grid_.cell_of(d_r);
+    const int last = std::min(grid_.cell_of(d_r + settings_.rho_m), grid_.count() - 1);
+    for (int n = std::max(robot + 1, 0); n <= last; ++n) {
+      ++count_.cells;
+      if (confirmed(n)) {
+        take(u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1));
+        return;
+      }
+    }
+  }
+
+  void begin_column(int u, int v) noexcept {
+    for (std::size_t k = 0; k < secondary_depths_m_.size(); ++k) {
+      rays_[k] = map_.ray(u, v, k);
+    }
+  }
+
+  /// "The existence of an obstacle is considered only if all involved cameras do confirm its presence."
+  [[nodiscard]] bool confirmed(int n) const noexcept {
+    for (std::size_t k = 0; k < secondary_depths_m_.size(); ++k) {
+      if (rays_[k].confirm(n, secondary_depths_m_[k]) == Confirmation::denied) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// floor((d_o - d_p) / dd), a negative number.
+  [[nodiscard]] int lower_end(double d_o) const noexcept {
+    const DepthQuantisation& q = grid_.quantisation();
+    if (q.growth == 0) {
+      return static_cast<int>(std::floor((d_o - point_.p.depth_m) / q.step_m));
+    }
+    return grid_.cell_of(d_o) - cell_of_point_ - 1;
+  }
+
+  void take(int u, int v, double d1_m, double d2_m) noexcept {
+    const NearestPoint obstacle = nearest_point_letter(grid_.principal(), u, v, d1_m, d2_m, point_.p);  // (5)-(7)
+    obstacles_.take_nearest(obstacle, u, v);
+    if (settings_.collect == Collect::hybrid) {
+      obstacles_.add_direction(obstacle);  // (10), (11)
+    }
+  }
+
+  const DepthGrid& grid_;
+  const Map& map_;
+  const Observation& principal_;
+  std::span<const float* const> secondary_depths_m_;
+  const EvaluationSettings& settings_;
+  const ControlPoint& point_;
+  ObstacleSet& obstacles_;
+  EvaluationCount& count_;
+  int cell_of_point_;
+  int cells_within_rho_;
+  /// The current pixel's ray in every secondary camera.
+  std::array<decltype(std::declval<const Map&>().ray(0, 0, 0)), kMostSecondaries> rays_;
+};
+
+}  // namespace depthgrid::grid
