@@ -1,0 +1,30 @@
+// A file that appears under its name only when it is complete. Not part of the installed headers.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+
+namespace depthgrid::input {
+
+/// Writes to a temporary name in the same folder; commit() renames it, the destructor removes it if it never came to
+/// that. So that a full disk or an error half-way leaves what was there before.
+class FileReplacement {
+ public:
+  /// Opens the temporary file. Throws Error naming `file` and the system's reason.
+  explicit FileReplacement(std::filesystem::path file);
+  ~FileReplacement();
+  FileReplacement(const FileReplacement&) = delete;
+  FileReplacement& operator=(const FileReplacement&) = delete;
+
+  [[nodiscard]] std::FILE* stream() const noexcept { return stream_; }
+
+  /// Closes and renames. Throws Error when anything since the start could not be written.
+  void commit();
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path temporary_;
+  std::FILE* stream_ = nullptr;
+};
+
+}  // namespace depthgrid::input
