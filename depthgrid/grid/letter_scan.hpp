@@ -42,7 +42,7 @@ class LetterScan {
         obstacles_(obstacles),
         count_(count),
         cell_of_point_(grid.cell_of(point.p.depth_m)),
-        cells_within_rho_(grid.cell_of(point.p.depth_m + settings.rho_m) - cell_of_point_) {}
+        cells_within_rho_(cells_within_rho(point.p.depth_m)) {}
 
   /// One pixel of interest: the case distinction of section VI.
   void pixel(int u, int v) noexcept {
@@ -54,7 +54,7 @@ class LetterScan {
     } else if (d_o > d_p + settings_.rho_m || d_o >= grid_.d_max_m()) {
       return;  // (i), and shadows that begin beyond the grid
     } else if (d_o >= d_p) {
-      take(u, v, d_o, d_o);  // (ii)
+      take(u, v, nearest_point_letter(grid_.principal(), u, v, d_o, d_o, point_.p));  // (ii)
     } else {
       behind_surface(u, v, d_o);  // (iii); without measurement d_o is 0: everything on the ray needs confirmation
     }
@@ -71,20 +71,12 @@ class LetterScan {
     const int surface = cell_of_point_ + lower_end(d_o);
     const int first = std::max({surface, cell_of_point_ - cells_within_rho_ - 1, 0});
     for (int j = 0; cell_of_point_ + j <= last || cell_of_point_ - j >= first; ++j) {
-      bool found = false;
-      for (const int n : {cell_of_point_ + j, cell_of_point_ - j}) {
-        if (n >= first && n <= last) {
-          ++count_.cells;
-          if (confirmed(n)) {
-            found = true;
-            take(u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1));
-          }
-        }
-        if (j == 0) {
-          break;
-        }
-      }
-      if (found) {
+      const int beyond = cell_of_point_ + j;
+      const int before = cell_of_point_ - j;
+      const bool found_beyond = beyond >= first && beyond <= last && confirmed(beyond);
+      const bool found_before = j > 0 && before >= first && before <= last && confirmed(before);
+      if (found_beyond || found_before) {
+        take_nearer(u, v, found_beyond ? beyond : before, found_before ? before : beyond);
         return;
       }
     }
@@ -95,11 +87,10 @@ class LetterScan {
     ++count_.gray_pixels;
     begin_column(u, v);
     const int robot = grid_.cell_of(d_r);
-    const int last = std::min(grid_.cell_of(d_r + settings_.rho_m), grid_.count() - 1);
+    const int last = std::min(robot + cells_within_rho(d_r), grid_.count() - 1);
     for (int n = std::max(robot + 1, 0); n <= last; ++n) {
-      ++count_.cells;
       if (confirmed(n)) {
-        take(u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1));
+        take(u, v, cell_obstacle(u, v, n));
         return;
       }
     }
@@ -112,7 +103,8 @@ class LetterScan {
   }
 
   /// "The existence of an obstacle is considered only if all involved cameras do confirm its presence."
-  [[nodiscard]] bool confirmed(int n) const noexcept {
+  [[nodiscard]] bool confirmed(int n) noexcept {
+    ++count_.cells;
     for (std::size_t k = 0; k < secondary_depths_m_.size(); ++k) {
       if (rays_[k].confirm(n, secondary_depths_m_[k]) == Confirmation::denied) {
         return false;
@@ -130,8 +122,27 @@ class LetterScan {
     return grid_.cell_of(d_o) - cell_of_point_ - 1;
   }
 
-  void take(int u, int v, double d1_m, double d2_m) noexcept {
-    const NearestPoint obstacle = nearest_point_letter(grid_.principal(), u, v, d1_m, d2_m, point_.p);  // (5)-(7)
+  /// floor(rho / dd); with a growing step the cells between d_m and d_m + rho.
+  [[nodiscard]] int cells_within_rho(double d_m) const noexcept {
+    const DepthQuantisation& q = grid_.quantisation();
+    if (q.growth == 0) {
+      return static_cast<int>(std::floor(settings_.rho_m / q.step_m * (1 + 1e-12)));
+    }
+    return grid_.cell_of(d_m + settings_.rho_m) - grid_.cell_of(d_m);
+  }
+
+  [[nodiscard]] NearestPoint cell_obstacle(int u, int v, int n) const noexcept {
+    return nearest_point_letter(grid_.principal(), u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1), point_.p);
+  }
+
+  /// Of two cells confirmed at the same |j| the nearer one stands for the pixel.
+  void take_nearer(int u, int v, int n, int other) noexcept {
+    const NearestPoint obstacle = cell_obstacle(u, v, n);
+    const NearestPoint second = other == n ? obstacle : cell_obstacle(u, v, other);
+    take(u, v, second.distance_m < obstacle.distance_m ? second : obstacle);
+  }
+
+  void take(int u, int v, const NearestPoint& obstacle) noexcept {
     obstacles_.take_nearest(obstacle, u, v);
     if (settings_.collect == Collect::hybrid) {
       obstacles_.add_direction(obstacle);  // (10), (11)

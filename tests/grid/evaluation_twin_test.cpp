@@ -1,0 +1,230 @@
+// The fast scans against their slow twins on random problems.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+
+#include "depthgrid/grid/cell_carver.hpp"
+#include "depthgrid/grid/evaluation.hpp"
+#include "grid/letter_twin.hpp"
+#include "reference/environment.hpp"
+#include "reference/random_problem.hpp"
+
+namespace depthgrid::grid {
+namespace {
+
+using reference::RandomProblem;
+
+DepthQuantisation quantisation_of(const RandomProblem& problem, double growth = 0.0) {
+  return {problem.d_min_m, problem.step_m, growth, problem.cell_count};
+}
+
+std::vector<SecondaryCamera> secondaries_of(const RandomProblem& problem) {
+  std::vector<SecondaryCamera> secondaries;
+  const Pose& T_world_principal = problem.rig.cameras[problem.principal].T_world_camera;
+  for (std::size_t k = 0; k < problem.rig.cameras.size(); ++k) {
+    if (k != problem.principal) {
+      const RigCamera& camera = problem.rig.cameras[k];
+      secondaries.push_back({camera.intrinsics, camera.T_world_camera.inverse() * T_world_principal});
+    }
+  }
+  return secondaries;
+}
+
+std::vector<Observation> observe(const RandomProblem& problem, const SensorMargin* margin) {
+  std::vector<Observation> observations;
+  for (std::size_t k = 0; k < problem.rig.cameras.size(); ++k) {
+    observations.emplace_back(problem.rig.cameras[k], margin);
+    EXPECT_TRUE(observations.back().update(problem.frames[k]));
+  }
+  return observations;
+}
+
+Eigen::Vector3d in_principal(const RandomProblem& problem, const Eigen::Vector3d& p_world) {
+  return problem.rig.cameras[problem.principal].T_world_camera.inverse() * p_world;
+}
+
+EvaluationSettings settings_of(const RandomProblem& problem, Variant variant, Collect collect) {
+  EvaluationSettings settings;
+  settings.variant = variant;
+  settings.collect = collect;
+  settings.rho_m = problem.rho_m;
+  settings.sensor = problem.sensor;
+  settings.pose = problem.pose;
+  return settings;
+}
+
+/// Visits `count` random problems; the seed printed with a failure makes the same problem again.
+template <class Check>
+void for_random_problems(int count, Check&& check) {
+  const std::uint64_t first = reference::test_seed();
+  count = static_cast<int>(reference::test_count(static_cast<std::uint64_t>(count)));
+  for (int i = 0; i < count; ++i) {
+    reference::RandomOptions options;
+    options.seed = first + static_cast<std::uint64_t>(i);
+    const RandomProblem problem = reference::make_random_problem(options);
+    SCOPED_TRACE("problem: " + reference::to_line(options));
+    check(problem);
+    if (::testing::Test::HasFailure()) {
+      return;
+    }
+  }
+}
+
+TEST(LetterScan, EqualsTheLetterWordForWord) {
+  std::int64_t within_rho = 0;
+  for_random_problems(300, [&](const RandomProblem& problem) {
+    const DepthGrid grid(problem.rig.cameras[problem.principal].intrinsics, quantisation_of(problem));
+    const ClosedFormMap map(grid, secondaries_of(problem));
+    const std::vector<Observation> observations = observe(problem, nullptr);
+    for (const Window window : {Window::region_of_surveillance, Window::whole_image}) {
+      EvaluationSettings settings = settings_of(problem, Variant::letter, Collect::hybrid);
+      settings.window = window;
+      GridEvaluator evaluator(problem.rig, problem.principal, grid.quantisation(), settings);
+      ASSERT_TRUE(evaluator.update(problem.frames));
+      for (const Eigen::Vector3d& p_world : problem.points_world) {
+        const Evaluation fast = evaluator.evaluate(p_world);
+        if (fast.nearest.state == ProximityState::outside) {
+          continue;
+        }
+        const twin::Answer slow =
+            twin::letter(grid, map, observations, problem.principal, settings, in_principal(problem, p_world));
+        EXPECT_NEAR(fast.nearest.distance_m, slow.nearest_m, 1e-12) << p_world.transpose();
+        EXPECT_EQ(fast.obstacle_points, slow.count) << p_world.transpose();
+        const Eigen::Vector3d mean =
+            problem.rig.cameras[problem.principal].T_world_camera.linear() * slow.mean_direction_camera;
+        EXPECT_LT((fast.hybrid_direction_world - mean).norm(), 1e-9) << p_world.transpose();
+        within_rho += slow.count > 0 ? 1 : 0;
+      }
+    }
+  });
+  EXPECT_GT(within_rho, 0);
+}
+
+/// Every cell of every pixel, each with its exact distance.
+double corrected_twin(const RandomProblem& problem, const DepthGrid& grid, const std::vector<Observation>& observations,
+                      const EvaluationSettings& settings, const Eigen::Vector3d& p_camera) {
+  const auto& cameras = problem.rig.cameras;
+  const RigCamera& principal = cameras[problem.principal];
+  const bool margin = settings.pose.translation_m > 0 || settings.pose.rotation_rad > 0 || settings.pose.time_m > 0;
+  std::vector<CellCarver> carvers;
+  for (const RigCamera& camera : cameras) {
+    carvers.emplace_back(camera.intrinsics, camera.T_world_camera.inverse() * principal.T_world_camera,
+                         camera.rule.near_m, settings.pose);
+  }
+  double best_m = settings.rho_m;
+  for (int v = 0; v < grid.principal().height_px; ++v) {
+    for (int u = 0; u < grid.principal().width_px; ++u) {
+      const double g = observations[problem.principal].free_m().at(u, v);
+      for (int n = 0; n < grid.count(); ++n) {
+        PixelFrustum cell = grid.cell(u, v, n);
+        if (!margin && g > principal.rule.near_m) {
+          // The principal camera frees near .. g on its own rays, to the point.
+          if (cell.d1_m >= principal.rule.near_m) {
+            cell.d1_m = std::max(cell.d1_m, g);
+          }
+          if (cell.d2_m <= cell.d1_m) {
+            continue;
+          }
+        }
+        bool freed = false;
+        for (std::size_t k = 0; k < cameras.size() && !freed; ++k) {
+          if (k != problem.principal || margin) {
+            freed = carvers[k].frees(carvers[k].edges(cell), cell.d1_m, cell.d2_m, observations[k].free_m());
+          }
+        }
+        if (!freed) {
+          best_m = std::min(best_m, nearest_point(cell, p_camera).distance_m);
+        }
+      }
+    }
+  }
+  return best_m;
+}
+
+TEST(CorrectedScan, EqualsTheNearestOfAllCells) {
+  std::int64_t within_rho = 0;
+  for_random_problems(60, [&](const RandomProblem& problem) {
+    const DepthGrid grid(problem.rig.cameras[problem.principal].intrinsics, quantisation_of(problem));
+    const std::vector<Observation> observations = observe(problem, &problem.sensor);
+    const EvaluationSettings settings = settings_of(problem, Variant::corrected, Collect::minimum);
+    GridEvaluator evaluator(problem.rig, problem.principal, grid.quantisation(), settings);
+    ASSERT_TRUE(evaluator.update(problem.frames));
+    for (const Eigen::Vector3d& p_world : problem.points_world) {
+      const Evaluation fast = evaluator.evaluate(p_world);
+      if (fast.nearest.state == ProximityState::outside) {
+        continue;
+      }
+      const double slow = corrected_twin(problem, grid, observations, settings, in_principal(problem, p_world));
+      // A blind zone that ends inside a cell is cut exactly by the scan and kept whole by the twin.
+      if (problem.rig.cameras[problem.principal].rule.near_m > problem.d_min_m) {
+        EXPECT_LE(slow, fast.nearest.distance_m + 1e-9) << p_world.transpose();
+      } else {
+        EXPECT_NEAR(fast.nearest.distance_m, slow, 1e-9) << p_world.transpose();
+      }
+      within_rho += slow < settings.rho_m ? 1 : 0;
+    }
+  });
+  EXPECT_GT(within_rho, 0);
+}
+
+TEST(SmartScan, FindsTheMinimumOfTheWholeScan) {
+  for_random_problems(200, [&](const RandomProblem& problem) {
+    for (const Variant variant : {Variant::letter, Variant::corrected}) {
+      GridEvaluator all(problem.rig, problem.principal, quantisation_of(problem),
+                        settings_of(problem, variant, Collect::hybrid));
+      GridEvaluator smart(problem.rig, problem.principal, quantisation_of(problem),
+                          settings_of(problem, variant, Collect::minimum));
+      ASSERT_TRUE(all.update(problem.frames));
+      ASSERT_TRUE(smart.update(problem.frames));
+      for (const Eigen::Vector3d& p_world : problem.points_world) {
+        EvaluationCount all_count;
+        EvaluationCount smart_count;
+        const Evaluation a = all.evaluate(p_world, &all_count);
+        const Evaluation b = smart.evaluate(p_world, &smart_count);
+        ASSERT_EQ(has_distance(a.nearest), has_distance(b.nearest));
+        if (has_distance(a.nearest)) {
+          EXPECT_NEAR(a.nearest.distance_m, b.nearest.distance_m, 1e-9) << p_world.transpose();
+        }
+        EXPECT_LE(smart_count.pixels, all_count.pixels);
+      }
+    }
+  });
+}
+
+TEST(CorrectedScan, TheWindowOfTheSphereLosesNothing) {
+  for_random_problems(100, [&](const RandomProblem& problem) {
+    EvaluationSettings settings = settings_of(problem, Variant::corrected, Collect::minimum);
+    GridEvaluator window(problem.rig, problem.principal, quantisation_of(problem), settings);
+    settings.window = Window::whole_image;
+    GridEvaluator image(problem.rig, problem.principal, quantisation_of(problem), settings);
+    ASSERT_TRUE(window.update(problem.frames));
+    ASSERT_TRUE(image.update(problem.frames));
+    for (const Eigen::Vector3d& p_world : problem.points_world) {
+      const Evaluation a = window.evaluate(p_world);
+      const Evaluation b = image.evaluate(p_world);
+      if (has_distance(a.nearest)) {
+        EXPECT_NEAR(a.nearest.distance_m, b.nearest.distance_m, 1e-12) << p_world.transpose();
+      }
+    }
+  });
+}
+
+TEST(CorrectedScan, HybridDirectionIsLedByTheNearest) {
+  for_random_problems(100, [&](const RandomProblem& problem) {
+    EvaluationSettings settings = settings_of(problem, Variant::corrected, Collect::hybrid);
+    settings.direction_blend = 1.0;
+    GridEvaluator evaluator(problem.rig, problem.principal, quantisation_of(problem), settings);
+    ASSERT_TRUE(evaluator.update(problem.frames));
+    for (const Eigen::Vector3d& p_world : problem.points_world) {
+      const Evaluation answer = evaluator.evaluate(p_world);
+      if (answer.obstacle_points > 0 && answer.nearest.distance_m > 0) {
+        EXPECT_NEAR(answer.hybrid_direction_world.norm(), 1.0, 1e-9);
+        EXPECT_GE(answer.hybrid_direction_world.dot(answer.nearest.direction_world), std::sqrt(0.5) - 1e-9);
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace depthgrid::grid
