@@ -2,6 +2,7 @@
 
 #include <rapidjson/document.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -31,6 +32,15 @@ const Value* find(const Value& object, const char* key) {
 }
 
 std::string text_of(const Value& string) { return {string.GetString(), string.GetStringLength()}; }
+
+/// Names go into messages, tables and file names: one line, no NUL.
+std::string name_of(const Value& string) {
+  std::string text = text_of(string);
+  if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
+    fail(excerpt(string), " holds a control character, names must not");
+  }
+  return text;
+}
 
 Pose pose_of(const Value& rows) {
   Eigen::Matrix4d matrix;
@@ -85,7 +95,7 @@ MeasurementRule rule_of(const Value& value, const Defaults& defaults) {
 
 RigCamera camera_of(const Value& value, const Defaults& defaults, const std::string& name, const std::string& place) {
   RigCamera camera;
-  camera.id = text_of(value["id"]);
+  camera.id = at_place(name, place + "/id", [&] { return name_of(value["id"]); });
   camera.intrinsics = from_opencv(value["width"].GetInt(), value["height"].GetInt(), value["fx"].GetDouble(),
                                   value["fy"].GetDouble(), value["cx"].GetDouble(), value["cy"].GetDouble());
   if (const Value* distortion = find(value, "distortion")) {
@@ -108,7 +118,7 @@ std::string depth_files_of(const Value& camera, int frame_count, const std::stri
   if (given == nullptr) {
     return {};
   }
-  std::string pattern = text_of(*given);
+  std::string pattern = name_of(*given);
   const std::string conversion = checked_conversion(pattern);
   if (conversion.empty() && frame_count > 1) {
     fail("'", pattern, "' has no %d or %0Nd, but /frames/count is ", frame_count);
@@ -171,7 +181,7 @@ RigFile parse_rig(std::string_view text, const std::string& name) {
   check_schema(document, schema(), name);
   RigFile file;
   if (const Value* rig_name = find(document, "name")) {
-    file.rig.name = text_of(*rig_name);
+    file.rig.name = at_place(name, "/name", [&] { return name_of(*rig_name); });
   }
   if (const Value* floor = find(document, "T_floor_world")) {
     file.rig.T_floor_world = at_place(name, "/T_floor_world", [&] { return pose_of(*floor); });
