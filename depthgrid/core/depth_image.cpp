@@ -33,41 +33,46 @@ void check_layout(std::size_t elements, std::size_t element_bytes, int width_px,
   }
 }
 
-/// 0 = no measurement. NaN fails every comparison and ends as 0.
-inline float decide(float depth_m, float near_m, float far_m, bool clamp) noexcept {
-  if (!(depth_m > 0.0F) || !(depth_m >= near_m) || std::isinf(depth_m)) {
-    return 0.0F;
-  }
-  if (depth_m > far_m) {
-    return clamp ? far_m : 0.0F;
-  }
-  return depth_m;
+/// A limit in single precision; beyond the largest float it is infinite.
+float limit_m(double value_m) noexcept {
+  return value_m > std::numeric_limits<float>::max() ? std::numeric_limits<float>::infinity()
+                                                     : static_cast<float>(value_m);
 }
 
-inline float decide_units(std::uint16_t value, float scale, float near_m, float far_m,
-                          const MeasurementRule& rule) noexcept {
-  if (value == 0 || value == kSaturated) {
-    return 0.0F;
+/// The rule with its limits in the pixels' precision.
+struct Decision {
+  explicit Decision(const MeasurementRule& rule) noexcept
+      : near_m(limit_m(rule.near_m)),
+        far_m(limit_m(rule.far_m)),
+        beyond_far_m(rule.clamp_beyond_far ? far_m : 0.0F),
+        invalid_units(rule.invalid_units) {}
+
+  /// 0 = no measurement. NaN fails the comparisons and ends as 0. No branches, so that rows vectorise.
+  [[nodiscard]] float of_metres(float depth_m) const noexcept {
+    const float limited_m = depth_m > far_m ? beyond_far_m : depth_m;
+    const bool valid = (depth_m > 0.0F) & (depth_m >= near_m) & (depth_m <= std::numeric_limits<float>::max());
+    return valid ? limited_m : 0.0F;
   }
-  for (const std::uint16_t invalid : rule.invalid_units) {
-    if (value == invalid) {
-      return 0.0F;
-    }
+
+  /// The product is rounded once, so a limit written in metres meets the unit it stands for.
+  [[nodiscard]] float of_units(std::uint16_t units, double metres_per_unit) const noexcept {
+    const float depth_m = of_metres(static_cast<float>(static_cast<double>(units) * metres_per_unit));
+    return units == kSaturated ? 0.0F : depth_m;
   }
-  return decide(static_cast<float>(value) * scale, near_m, far_m, rule.clamp_beyond_far);
-}
+
+  [[nodiscard]] bool listed(std::uint16_t units) const noexcept {
+    return std::find(invalid_units.begin(), invalid_units.end(), units) != invalid_units.end();
+  }
+
+  float near_m;
+  float far_m;
+  float beyond_far_m;
+  std::span<const std::uint16_t> invalid_units;
+};
 
 template <class Pixel>
 const Pixel* row(const DepthView& view, int v) noexcept {
   return reinterpret_cast<const Pixel*>(static_cast<const char*>(view.data) + view.stride_bytes * v);
-}
-
-inline float pixel_depth_m(const DepthView& view, const MeasurementRule& rule, float near_m, float far_m, int u,
-                           int v) noexcept {
-  if (view.format == DepthFormat::uint16_units) {
-    return decide_units(row<std::uint16_t>(view, v)[u], static_cast<float>(view.metres_per_unit), near_m, far_m, rule);
-  }
-  return decide(row<float>(view, v)[u], near_m, far_m, rule.clamp_beyond_far);
 }
 
 }  // namespace
@@ -96,8 +101,14 @@ void validate(const MeasurementRule& rule, const char* name) {
 }
 
 std::optional<float> measured_depth_m(const DepthView& view, const MeasurementRule& rule, int u, int v) noexcept {
-  const float depth_m =
-      pixel_depth_m(view, rule, static_cast<float>(rule.near_m), static_cast<float>(rule.far_m), u, v);
+  const Decision decision(rule);
+  float depth_m = 0.0F;
+  if (view.format == DepthFormat::uint16_units) {
+    const std::uint16_t units = row<std::uint16_t>(view, v)[u];
+    depth_m = decision.listed(units) ? 0.0F : decision.of_units(units, view.metres_per_unit);
+  } else {
+    depth_m = decision.of_metres(row<float>(view, v)[u]);
+  }
   return depth_m > 0.0F ? std::optional<float>(depth_m) : std::nullopt;
 }
 
@@ -110,11 +121,25 @@ DepthImage::DepthImage(int width_px, int height_px) : width_px_(width_px), heigh
 }
 
 void normalise(const DepthView& view, const MeasurementRule& rule, DepthImage& image) noexcept {
-  const auto near_m = static_cast<float>(rule.near_m);
-  const auto far_m = static_cast<float>(rule.far_m);
+  const Decision decision(rule);
   for (int v = 0; v < view.height_px; ++v) {
+    float* depth_m = image.data() + image.index(0, v);
+    if (view.format == DepthFormat::float32_metres) {
+      const auto* metres = row<float>(view, v);
+      for (int u = 0; u < view.width_px; ++u) {
+        depth_m[u] = decision.of_metres(metres[u]);
+      }
+      continue;
+    }
+    const auto* units = row<std::uint16_t>(view, v);
+    const double metres_per_unit = view.metres_per_unit;
     for (int u = 0; u < view.width_px; ++u) {
-      image.at(u, v) = pixel_depth_m(view, rule, near_m, far_m, u, v);
+      depth_m[u] = decision.of_units(units[u], metres_per_unit);
+    }
+    if (!rule.invalid_units.empty()) {
+      for (int u = 0; u < view.width_px; ++u) {
+        depth_m[u] = decision.listed(units[u]) ? 0.0F : depth_m[u];
+      }
     }
   }
 }

@@ -28,24 +28,37 @@ inline float round_towards_zero(double value) noexcept {
   return static_cast<float>(std::bit_cast<double>(std::bit_cast<std::uint64_t>(kept) & kFloatBits));
 }
 
+/// The margin, enlarged so that the rounding of D - m(D) in double precision never shows the result above the exact
+/// value: the products and sums of m err by less than 2^-50 of m, the difference by less than 2^-50 of D. A margin of
+/// zero stays zero, for which D - m is exact.
+SensorMargin cover_rounding(const SensorMargin& margin) noexcept {
+  if (margin.constant_m == 0.0 && margin.linear == 0.0 && margin.quadratic_per_m == 0.0) {
+    return margin;
+  }
+  constexpr double kRounding = 0x1p-50;
+  return {margin.constant_m * (1.0 + kRounding), margin.linear * (1.0 + kRounding) + kRounding,
+          margin.quadratic_per_m * (1.0 + kRounding), margin.lateral_px};
+}
+
 /// D - m(D), never above the exact value; 0 for no measurement.
 void reduce_row(const float* measured_m, const SensorMargin& margin, int width_px, float* reduced_m) noexcept {
-  const double constant_m = margin.constant_m;
-  const double linear = margin.linear;
-  const double quadratic_per_m = margin.quadratic_per_m;
+  const SensorMargin m = margin;  // a copy, so that the compiler knows that the result does not change it
   for (int u = 0; u < width_px; ++u) {
     const double depth_m = static_cast<double>(measured_m[u]);
-    reduced_m[u] = round_towards_zero(depth_m - (constant_m + depth_m * (linear + depth_m * quadratic_per_m)));
+    reduced_m[u] = round_towards_zero(depth_m - depth_margin_m(m, depth_m));
   }
 }
 
 /// Robot pixels get the robot's exit. An exit that is not finite is no exit: the pixel stays what it was.
-void apply_robot_row(const float* measured_m, const float* near_m, const float* far_m, int width_px,
-                     float* reduced_m) noexcept {
+void apply_robot_row(const float* measured_m, const float* near_m, const float* far_m, const SensorMargin& margin,
+                     int width_px, float* reduced_m) noexcept {
+  const SensorMargin m = margin;
   constexpr float kLargest = std::numeric_limits<float>::max();
   for (int u = 0; u < width_px; ++u) {
-    const bool robot = (measured_m[u] > 0.0F) & (near_m[u] > 0.0F) & (near_m[u] <= reduced_m[u]) &
-                       (measured_m[u] <= far_m[u]) & (far_m[u] <= kLargest);
+    const double depth_m = static_cast<double>(measured_m[u]);
+    const bool reaches = static_cast<double>(near_m[u]) <= depth_m - depth_margin_m(m, depth_m);
+    const bool robot =
+        (measured_m[u] > 0.0F) & (near_m[u] > 0.0F) & reaches & (measured_m[u] <= far_m[u]) & (far_m[u] <= kLargest);
     const float exit_m = std::max(reduced_m[u], far_m[u]);
     reduced_m[u] = robot ? exit_m : reduced_m[u];
   }
@@ -101,6 +114,7 @@ void FreeDepth::update(const DepthImage& measured, const RobotView& robot) noexc
   const int width_px = free_m_.width_px();
   const int height_px = free_m_.height_px();
   const int reach_px = margin_.lateral_px;
+  const SensorMargin rounded_up = cover_rounding(margin_);
   if (measured.width_px() != width_px || measured.height_px() != height_px) {
     std::fill_n(free_m_.data(), free_m_.index(0, height_px), 0.0F);
     return;
@@ -109,10 +123,10 @@ void FreeDepth::update(const DepthImage& measured, const RobotView& robot) noexc
   for (int v = 0; v < height_px; ++v) {
     const float* measured_m = measured.data() + measured.index(0, v);
     float* row_m = reduced_m.data() + reduced_m.index(0, v);
-    reduce_row(measured_m, margin_, width_px, row_m);
+    reduce_row(measured_m, rounded_up, width_px, row_m);
     if (robot.near_m != nullptr) {
-      apply_robot_row(measured_m, robot.near_m + v * robot.stride_px, robot.far_m + v * robot.stride_px, width_px,
-                      row_m);
+      apply_robot_row(measured_m, robot.near_m + v * robot.stride_px, robot.far_m + v * robot.stride_px, margin_,
+                      width_px, row_m);
     }
     if (reach_px > 0) {
       filter_row(row_m, width_px, reach_px, row_minimum_m_.data() + row_minimum_m_.index(0, v));

@@ -34,14 +34,18 @@ void validate(const PoseMargin& margin, const char* name = "pose margin");
 }
 
 /// The depth g up to which each pixel's frustum is known to be free: the minimum over the (2w+1)^2 neighbourhood of
-/// D - m(D), where a pixel without measurement and every pixel outside the image count as 0; with lateral_px = 0 the
-/// pixel alone counts. Robot pixels (the pixel's own depth minus margin lies in the robot's interval) contribute the
-/// robot's exit instead. Result: metres, 0 = nothing is free. Buffers are allocated by the constructor only.
+/// D - m(D), where a pixel without measurement and every pixel outside the image count as 0 (so with w >= 1 the w
+/// outermost rows and columns are 0); with lateral_px = 0 the pixel alone counts. Robot pixels contribute the robot's
+/// exit far_m instead of D - m(D): those whose own measured depth lies in the robot's interval, near_m <= D - m(D) and
+/// D <= far_m, with 0 < near_m and a finite far_m. Result: metres, never above the exact value (rounded towards zero),
+/// never negative; 0 = nothing is free. Buffers are allocated by the constructor only.
 class FreeDepth {
  public:
+  /// Throws Error on a size outside [1, kLargestImageSide] or as validate(). Until the first update nothing is free.
   FreeDepth(int width_px, int height_px, const SensorMargin& margin);
 
-  /// `measured` (0 = no measurement) and `robot` have the size given to the constructor. Does not allocate.
+  /// `measured` (0 = no measurement) and `robot` have the size given to the constructor; with a `measured` of another
+  /// size nothing is free. Does not allocate. Not for two threads at once on one object.
   void update(const DepthImage& measured, const RobotView& robot) noexcept;
 
   [[nodiscard]] const DepthImage& image() const noexcept { return free_m_; }

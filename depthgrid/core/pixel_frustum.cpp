@@ -53,7 +53,9 @@ double minimiser_by_breakpoints(const Problem& problem) noexcept {
       high = falling ? high : z;
     }
   }
-  // Any depth inside the piece tells its faces. Where rounding leaves no depth inside, the clip decides.
+  // Any depth inside the piece tells its faces. Where rounding leaves no depth inside, the clip decides. (A minimum
+  // beyond the last breakpoint is not beyond the point's own depth, so minimiser() has found it: `high` is infinite
+  // here only when rounding brings such a case along.)
   const double inside = std::isinf(high) ? 2.0 * low + 1.0 : 0.5 * (low + high);
   return problem.root(x.slope(inside), y.slope(inside), low, high);
 }

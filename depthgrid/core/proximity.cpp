@@ -25,9 +25,7 @@ std::string_view to_string(ProximityState state) noexcept {
   return "invalid";
 }
 
-bool has_distance(const Proximity& answer) noexcept {
-  return !std::isnan(answer.distance_m);
-}
+bool has_distance(const Proximity& answer) noexcept { return !std::isnan(answer.distance_m); }
 
 double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max_m_s) noexcept {
   if (!has_distance(answer) || !(elapsed_s >= 0) || !(v_max_m_s >= 0)) {

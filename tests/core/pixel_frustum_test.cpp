@@ -67,11 +67,10 @@ constexpr double kMisalignment_m = 1e-11;
 /// Rounding of the vertices and of p* themselves, which matters where a vertex lies at p*.
 constexpr double kVertexRounding_m = 2e-14;
 
-/// Empty when nearest_point() and squared_distance() are right, else what is wrong.
-std::string check(const Case& c) {
+/// Empty when `nearest` is the nearest point and distance, else what is wrong.
+std::string check_answer(const Case& c, const NearestPoint& nearest) {
   const PixelFrustum& f = c.frustum;
   const Vector3d p(c.p_camera[0], c.p_camera[1], c.p_camera[2]);
-  const NearestPoint nearest = nearest_point(f, p);
   const Vector3d& q = nearest.point_camera;
   const double scale = std::max({1.0, p.cwiseAbs().maxCoeff() / 10.0, q.cwiseAbs().maxCoeff() / 10.0});
 
@@ -101,15 +100,23 @@ std::string check(const Case& c) {
   if (!(std::abs(nearest.distance_m - distance_m) <= 1e-15 * scale + 1e-14 * distance_m)) {
     return "distance " + number(nearest.distance_m) + " is not that of the nearest point, " + number(distance_m);
   }
-  if (!(std::abs(std::sqrt(squared_distance(f, p)) - distance_m) <= 1e-15 * scale + 1e-14 * distance_m)) {
-    return "squared_distance is " + number(squared_distance(f, p));
-  }
   if (nearest.distance_m == 0.0 ? nearest.direction_camera != Vector3d::Zero()
                                 : !((nearest.direction_camera * distance_m + to_point).norm() <= 1e-14 * scale &&
                                     std::abs(nearest.direction_camera.norm() - 1.0) <= 1e-14)) {
     return "wrong direction";
   }
   return {};
+}
+
+/// The same for both library calls.
+std::string check(const Case& c) {
+  const Vector3d p(c.p_camera[0], c.p_camera[1], c.p_camera[2]);
+  const NearestPoint nearest = nearest_point(c.frustum, p);
+  const double distance_m = std::sqrt(squared_distance(c.frustum, p));
+  if (!(std::abs(distance_m - nearest.distance_m) <= 1e-15 + 1e-14 * nearest.distance_m)) {
+    return "squared_distance is that of " + number(distance_m) + ", nearest_point's " + number(nearest.distance_m);
+  }
+  return check_answer(c, nearest);
 }
 
 class CaseMaker {
@@ -209,7 +216,21 @@ TEST(PixelFrustum, RandomCasesSatisfyTheCertificate) {
 }
 
 TEST(PixelFrustum, CertificateRejectsWrongPoints) {
-  // The check itself must be able to fail: a frustum whose answer is known, given with a nudged cell.
+  // A point 1 mm from the nearest one, on the same edge of an endless frustum: every vertex and three edges accept it.
+  const Case c{{0.3, 0.302, -0.2, -0.198, 2, kInf}, {1.0, 0.5, 2.0}};
+  const Vector3d p(1.0, 0.5, 2.0);
+  const NearestPoint right = nearest_point(c.frustum, p);
+  EXPECT_EQ(check_answer(c, right), "");
+  for (const double step_m : {-1e-3, 1e-3}) {
+    const Vector3d moved = right.point_camera + Vector3d(0.302, -0.198, 1) * step_m;
+    const double moved_m = (moved - p).norm();
+    EXPECT_NE(check_answer(c, {moved, moved_m, (moved - p) / moved_m}), "");
+  }
+  EXPECT_NE(check_answer(c, {right.point_camera, right.distance_m + 1e-9, right.direction_camera}), "");
+  EXPECT_NE(check_answer(c, {right.point_camera, right.distance_m, -right.direction_camera}), "");
+}
+
+TEST(PixelFrustum, AgreesWithSampling) {
   const PixelFrustum f{0.3, 0.302, -0.2, -0.198, 2, 2.01};
   const Vector3d p(1.0, 0.5, 2.0);
   const double exact_m = nearest_point(f, p).distance_m;
