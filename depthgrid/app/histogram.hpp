@@ -1,0 +1,22 @@
+// Quantiles of many non-negative numbers in little memory.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace depthgrid::app {
+
+/// Bins of half a millimetre from 0 to 2 m; everything beyond shares one last bin.
+class Histogram {
+ public:
+  void add(double value_m);
+  [[nodiscard]] std::int64_t count() const noexcept { return count_; }
+  /// The middle of the bin that holds the q-quantile, 0 <= q <= 1; NaN when empty, 2 m when in the last bin.
+  [[nodiscard]] double quantile_m(double q) const noexcept;
+
+ private:
+  std::vector<std::int32_t> bins_;
+  std::int64_t count_ = 0;
+};
+
+}  // namespace depthgrid::app

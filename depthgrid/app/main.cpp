@@ -1,0 +1,68 @@
+// The depthgrid command. Exit codes: 0 done, 1 an error while working, 2 a broken command line.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "depthgrid/app/distances_command.hpp"
+#include "depthgrid/app/info_command.hpp"
+#include "depthgrid/app/usage_error.hpp"
+#include "depthgrid/app/version.hpp"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+/// One line on standard error, whatever the message holds.
+int report(std::string message, int exit_code) {
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') {
+      c = ' ';
+    }
+  }
+  (void)std::fprintf(stderr, "depthgrid: %s\n", message.c_str());
+  return exit_code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "Computes a lower bound of the distance from control points to space that no depth camera has seen free.",
+      "depthgrid");
+  app.set_version_flag("--version", std::string("depthgrid ") + depthgrid::app::kVersion);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  app.footer(
+      "Examples:\n"
+      "  depthgrid demo\n"
+      "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"
+      "  depthgrid distances ../shared/data/kinect3_ball --point 0.4,0.2,1.1 --in floor --frames 0:80:8\n"
+      "'depthgrid COMMAND --help' explains a command. Exit codes: 0 done, 1 error, 2 broken command line.");
+  depthgrid::app::add_distances_command(app);
+  depthgrid::app::add_info_command(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {  // --help and --version
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    return report(std::string(error.what()) + " (depthgrid --help explains)", kUsage);
+  } catch (const depthgrid::app::UsageError& error) {
+    return report(error.what(), kUsage);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory", kFailed);
+  } catch (const std::exception& error) {
+    return report(error.what(), kFailed);
+  } catch (...) {
+    return report("unknown error", kFailed);
+  }
+}

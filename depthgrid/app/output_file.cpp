@@ -1,0 +1,57 @@
+#include "depthgrid/app/output_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid::app {
+
+namespace fs = std::filesystem;
+
+OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
+  if (path_ == "-") {
+    return;
+  }
+  const auto folder = fs::path(path_).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder)) {
+    fail("cannot write ", path_, ": there is no folder ", folder.string(), "; create it first");
+  }
+  if (fs::is_directory(path_)) {
+    fail("cannot write ", path_, ": it is a folder; name a file");
+  }
+  replacement_.emplace(path_);
+  stream_ = replacement_->stream();
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) {
+    fail("cannot write ", replacement_ ? path_ : "standard output", ": ", std::strerror(errno));
+  }
+}
+
+void OutputFile::commit() {
+  if (replacement_) {
+    replacement_->commit();
+  } else if (std::fflush(stream_) != 0) {
+    fail("cannot write standard output: ", std::strerror(errno));
+  }
+}
+
+void make_output_directory(const std::string& directory) {
+  if (fs::is_directory(directory)) {
+    return;
+  }
+  const auto parent = fs::absolute(directory).lexically_normal().parent_path();
+  if (!fs::is_directory(parent)) {
+    fail("cannot create the folder ", directory, ": there is no folder ", parent.string(), "; create it first");
+  }
+  std::error_code error;
+  if (!fs::create_directory(directory, error) || error) {
+    fail("cannot create the folder ", directory, ": ", error ? error.message() : "a file of that name is in the way");
+  }
+}
+
+}  // namespace depthgrid::app

@@ -1,0 +1,23 @@
+// Errors of the command line itself; they end the command with exit code 2 instead of 1.
+#pragma once
+
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid::app {
+
+/// A broken command line: the message names the option, the value and the rule.
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Throws UsageError with the parts streamed one after the other into one line.
+template <class... Parts>
+[[noreturn]] void fail_usage(const Parts&... parts) {
+  std::ostringstream text;
+  text.precision(10);
+  (text << ... << parts);
+  throw UsageError(text.str());
+}
+
+}  // namespace depthgrid::app
