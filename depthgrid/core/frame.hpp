@@ -9,8 +9,8 @@ namespace depthgrid {
 
 /// The robot as one camera sees it: for each pixel the depth interval [near_m, far_m] of the padded robot model
 /// along that pixel's frustum, at the joint positions of the exposure. near_m = 0: no robot in this pixel. Where a
-/// ray crosses the robot several times this is the first contiguous interval. The whole interval of a pixel's
-/// frustum counts as robot. Same size as the depth image; the buffers must outlive the view.
+/// ray crosses the robot several times this is the contiguous interval that holds its first surface. The whole interval
+/// of a pixel's frustum counts as robot. Same size as the depth image; the buffers must outlive the view.
 struct RobotView {
   const float* near_m = nullptr;  ///< null: no robot in view
   const float* far_m = nullptr;

@@ -39,22 +39,31 @@ struct PixelInterval {
   Interval z_m;
 };
 
-/// For each pixel the union of its intervals up to the first gap. Reorders `intervals`.
-void merge(std::vector<PixelInterval>& intervals, DepthImage& near_m, DepthImage& far_m) {
+/// For each pixel the contiguous part of the union of its intervals that holds the first surface of the robot itself;
+/// the first part where the ray meets the padding only. Reorders `intervals`. An infinite surface means none.
+void merge(std::vector<PixelInterval>& intervals, const std::vector<double>& robot_surface_m, DepthImage& near_m,
+           DepthImage& far_m) {
   std::sort(intervals.begin(), intervals.end(), [](const PixelInterval& a, const PixelInterval& b) {
     return a.pixel != b.pixel ? a.pixel < b.pixel : a.z_m.entry < b.z_m.entry;
   });
   for (std::size_t i = 0; i < intervals.size();) {
     const std::size_t pixel = intervals[i].pixel;
-    const double entry_m = intervals[i].z_m.entry;
-    double exit_m = intervals[i].z_m.exit;
+    Interval part = intervals[i].z_m;
     for (++i; i < intervals.size() && intervals[i].pixel == pixel; ++i) {
-      if (intervals[i].z_m.entry <= exit_m) {
-        exit_m = std::max(exit_m, intervals[i].z_m.exit);
+      const Interval& next = intervals[i].z_m;
+      if (next.entry <= part.exit) {
+        part.exit = std::max(part.exit, next.exit);
+      } else if (std::isfinite(robot_surface_m[pixel]) && part.exit < robot_surface_m[pixel]) {
+        part = next;  // the ray left this part before it met the robot itself
+      } else {
+        break;
       }
     }
-    near_m.data()[pixel] = static_cast<float>(std::max<double>(entry_m, std::numeric_limits<float>::min()));
-    far_m.data()[pixel] = static_cast<float>(exit_m);
+    while (i < intervals.size() && intervals[i].pixel == pixel) {
+      ++i;
+    }
+    near_m.data()[pixel] = static_cast<float>(std::max<double>(part.entry, std::numeric_limits<float>::min()));
+    far_m.data()[pixel] = static_cast<float>(part.exit);
   }
 }
 
@@ -104,6 +113,7 @@ View Scene::render(const PinholeCamera& camera, const Pose& T_world_camera, doub
 
   bool inside = false;
   std::vector<PixelInterval> robot;
+  std::vector<double> robot_surface_m(pixels, std::numeric_limits<double>::infinity());
   for_each([&](const auto& shape_world, Body body) {
     const auto shape = transformed(T_camera_world, shape_world);
     inside = inside || simulation::contains(shape, Eigen::Vector3d::Zero());
@@ -111,13 +121,16 @@ View Scene::render(const PinholeCamera& camera, const Pose& T_world_camera, doub
       depth_m[pixel] = std::min(depth_m[pixel], static_cast<float>(z.entry));
     });
     if (body == Body::robot) {
+      cast(camera, shape, [&robot_surface_m](std::size_t pixel, const Interval& z) {
+        robot_surface_m[pixel] = std::min(robot_surface_m[pixel], z.entry);
+      });
       cast(camera, grown(shape, robot_padding_m), [&robot](std::size_t pixel, const Interval& z) {
         robot.push_back({pixel, z});
       });
     }
   });
   std::for_each(depth_m, depth_m + pixels, [inside](float& z) { z = !inside && z > 0 && z < kNothing ? z : 0.0F; });
-  merge(robot, view.robot_near_m, view.robot_far_m);
+  merge(robot, robot_surface_m, view.robot_near_m, view.robot_far_m);
   return view;
 }
 

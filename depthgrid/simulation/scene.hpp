@@ -17,8 +17,11 @@ enum class Body : std::uint8_t { obstacle, robot };
 
 /// What one camera sees of a scene. Same size, metres, 0 = nothing there.
 struct View {
-  DepthImage depth_m;       ///< nearest surface, robot included
-  DepthImage robot_near_m;  ///< first contiguous depth interval of the padded robot along the pixel's centre ray
+  DepthImage depth_m;  ///< nearest surface, robot included
+  /// Depth interval of the padded robot along the pixel's centre ray. Where the ray crosses it several times, the
+  /// contiguous one that holds the first surface of the robot itself: otherwise the padding of one link would hide that
+  /// another link behind it is robot too. The first one where the ray meets the padding only.
+  DepthImage robot_near_m;
   DepthImage robot_far_m;
 };
 

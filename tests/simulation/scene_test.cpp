@@ -95,8 +95,9 @@ TEST(Scene, EveryPixelEndsAtTheFirstSurfaceOfItsCentreRay) {
   }
 }
 
-TEST(Scene, RobotIntervalIsTheFirstContiguousPartOfThePaddedRobot) {
+TEST(Scene, RobotIntervalIsTheContiguousPartOfThePaddedRobotAtItsFirstSurface) {
   int gaps = 0;
+  int behind_padding = 0;
   for (int n = 0; n < count(150); ++n) {
     Random random(seed() + static_cast<unsigned long>(n));
     const RandomScene world = random_scene(random);
@@ -120,7 +121,17 @@ TEST(Scene, RobotIntervalIsTheFirstContiguousPartOfThePaddedRobot) {
           continue;
         }
         ASSERT_LE(near_m, far_m) << where;
-        ASSERT_GE(first_inside(0, ray.norm(), at), std::min(near_m, kFarthest) - kFloatRounding) << where;
+        const double padding_begins = first_inside(0, ray.norm(), at);
+        const double surface_m = first_inside(0, ray.norm(), [&](double z) {
+          return nearest_of(world.robot, 0, T_world_camera * Eigen::Vector3d(ray * z));
+        });
+        if (surface_m < kFarthest) {
+          ASSERT_LE(near_m, surface_m + kFloatRounding) << where;
+          ASSERT_GE(far_m, surface_m - kFloatRounding) << where;
+          behind_padding += padding_begins < near_m - 1e-3 ? 1 : 0;
+        } else if (far_m < kFarthest) {  // else its surface lies farther away than the march went
+          ASSERT_GE(padding_begins, near_m - kFloatRounding) << where;
+        }
         if (near_m >= kFarthest) {
           continue;
         }
@@ -130,7 +141,8 @@ TEST(Scene, RobotIntervalIsTheFirstContiguousPartOfThePaddedRobot) {
         }
         if (far_m < kFarthest) {
           ASSERT_NEAR(at(far_m), 0, kFloatRounding) << where;
-          // A robot part that begins right behind the exit would have to be merged; a graze of the surface is none.
+          // A part of the robot that begins right behind the exit would have to be merged; a graze of the surface is
+          // none.
           const double again = first_inside(far_m + kFloatRounding, ray.norm(), at);
           ASSERT_TRUE(again == kFarthest || at(0.5 * (far_m + again)) > -kFloatRounding) << where;
           gaps += again < kFarthest ? 1 : 0;
@@ -138,6 +150,7 @@ TEST(Scene, RobotIntervalIsTheFirstContiguousPartOfThePaddedRobot) {
       }
     }
   }
+  EXPECT_GT(behind_padding, 0) << "no ray left the padding before it met the robot: nothing tested there";
   EXPECT_GT(gaps, 0) << "no case had a second part of the robot behind the first: nothing tested there";
 }
 
