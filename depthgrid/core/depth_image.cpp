@@ -25,11 +25,12 @@ void check_layout(std::size_t elements, std::size_t element_bytes, int width_px,
     fail("depth image: stride is ", stride_bytes, " bytes, must be a multiple of ", element_bytes, " and at least ",
          row_bytes, " for ", width_px, " pixels");
   }
-  const auto needed = static_cast<std::size_t>(stride_bytes) * static_cast<std::size_t>(height_px - 1) +
-                      static_cast<std::size_t>(row_bytes);
-  if (elements * element_bytes < needed) {
-    fail("depth image: buffer has ", elements * element_bytes, " bytes, ", width_px, " x ", height_px,
-         " pixels with a stride of ", stride_bytes, " bytes need ", needed);
+  // In floating point, because a huge stride times the height exceeds every integer.
+  const double needed = static_cast<double>(stride_bytes) * (height_px - 1) + static_cast<double>(row_bytes);
+  const auto available = static_cast<double>(elements * element_bytes);
+  if (available < needed) {
+    fail("depth image: buffer has ", available, " bytes, ", width_px, " x ", height_px, " pixels with a stride of ",
+         stride_bytes, " bytes need ", needed);
   }
 }
 

@@ -17,21 +17,36 @@ constexpr double kSliver_px = 1e-6;
 /// Steps in which the radial function is checked for a fold.
 constexpr int kFoldSteps = 4096;
 
-/// The factor on the radius and its derivative with respect to s = r^2. T is double or Interval.
+/// The factor on the radius and its derivatives with respect to s = r^2. T is double or Interval.
 template <class T>
 struct Radial {
-  T factor, derivative, denominator;
+  T factor, derivative, second_derivative, denominator;
 };
 
 template <class T>
 Radial<T> radial(const Distortion& distortion, const T& s) noexcept {
   const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = distortion.coefficients;
   const T numerator = T(1.0) + s * (T(k1) + s * (T(k2) + s * T(k3)));
-  const T numerator_derivative = T(k1) + s * (T(2.0 * k2) + s * T(3.0 * k3));
+  const T numerator_1 = T(k1) + s * (T(2.0 * k2) + s * T(3.0 * k3));
+  const T numerator_2 = T(2.0 * k2) + s * T(6.0 * k3);
   const T denominator = T(1.0) + s * (T(k4) + s * (T(k5) + s * T(k6)));
-  const T denominator_derivative = T(k4) + s * (T(2.0 * k5) + s * T(3.0 * k6));
+  const T denominator_1 = T(k4) + s * (T(2.0 * k5) + s * T(3.0 * k6));
+  const T denominator_2 = T(2.0 * k5) + s * T(6.0 * k6);
   const T factor = numerator / denominator;
-  return {factor, (numerator_derivative - factor * denominator_derivative) / denominator, denominator};
+  const T derivative = (numerator_1 - factor * denominator_1) / denominator;
+  const T second = (numerator_2 - T(2.0) * derivative * denominator_1 - factor * denominator_2) / denominator;
+  return {factor, derivative, second, denominator};
+}
+
+/// Encloses the radial function over s. The mean value form (value in the middle plus derivative times half the width)
+/// stays tight where large coefficients nearly cancel, which plain interval arithmetic does not.
+Radial<Interval> radial_over(const Distortion& distortion, const Interval& s) noexcept {
+  const Radial<double> middle = radial(distortion, 0.5 * (s.low + s.high));
+  Radial<Interval> all = radial(distortion, s);
+  const Interval offset(-0.5 * (s.high - s.low), 0.5 * (s.high - s.low));
+  all.derivative = Interval(middle.derivative) + all.second_derivative * offset;
+  all.factor = Interval(middle.factor) + all.derivative * offset;
+  return all;
 }
 
 /// Partial derivatives of the distorted coordinates over a box of undistorted ones.
@@ -55,7 +70,7 @@ Jacobian jacobian(const Distortion& distortion, const Interval& x, const Interva
 double unfolded_squared_radius(const Distortion& distortion, double s_largest) noexcept {
   for (int step = 0; step < kFoldSteps; ++step) {
     const Interval s(s_largest * step / kFoldSteps, s_largest * (step + 1) / kFoldSteps);
-    const Radial<Interval> r = radial(distortion, s);
+    const Radial<Interval> r = radial_over(distortion, s);
     if (!((r.factor + Interval(2.0) * s * r.derivative).low > 0.0)) {
       return s.low;
     }
@@ -153,7 +168,7 @@ DepthUndistortion::DepthUndistortion(const PinholeCamera& distorted, const Disto
     for (int u = 0; u < width_px_; ++u) {
       const Interval x = pixel_interval(u, undistorted.fx_px, undistorted.cx_px);
       const Interval s = square(x) + square(y);
-      const Radial<Interval> r = radial(distortion, s);
+      const Radial<Interval> r = radial_over(distortion, s);
       const Jacobian j = jacobian(distortion, x, y, r);
       const Interval determinant = j.xx * j.yy - j.xy * j.yx;
       if (r.denominator.contains(0.0) || !std::isfinite(determinant.low) || !std::isfinite(determinant.high)) {
