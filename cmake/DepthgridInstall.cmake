@@ -10,6 +10,37 @@ install(TARGETS ${depthgrid_libraries} EXPORT depthgridTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 install(EXPORT depthgridTargets NAMESPACE depthgrid:: DESTINATION ${depthgrid_package_dir} COMPONENT dev)
 
+# What a program that links a library has to find itself: everything in the library's link interface, which for a
+# static library includes what it uses privately. A new dependency gets a line here.
+set(depthgrid_package_of_Eigen3::Eigen "Eigen3 3.3 NO_MODULE")
+set(depthgrid_package_of_Threads::Threads Threads)
+set(depthgrid_package_of_ZLIB::ZLIB ZLIB)
+set(depthgrid_package_of_PNG::PNG PNG)
+set(depthgrid_package_of_hwy::hwy hwy)
+set(depthgrid_package_of_spdlog::spdlog spdlog)
+set(depthgrid_package_of_PkgConfig::CAIRO "pkg-config CAIRO cairo")
+
+set(depthgrid_components "")
+set(depthgrid_component_packages "")
+foreach(library IN LISTS depthgrid_libraries)  # in the order of the rooms: those below are done already
+  get_target_property(component ${library} EXPORT_NAME)
+  get_target_property(links ${library} INTERFACE_LINK_LIBRARIES)
+  set(packages_of_${component} "")
+  foreach(link IN LISTS links)
+    string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" link "${link}")
+    if(link MATCHES "^depthgrid(::|_)(.+)$")
+      list(APPEND packages_of_${component} ${packages_of_${CMAKE_MATCH_2}})
+    elseif(DEFINED depthgrid_package_of_${link})
+      list(APPEND packages_of_${component} "${depthgrid_package_of_${link}}")
+    elseif(link)
+      message(FATAL_ERROR "${library} links ${link}: say in ${CMAKE_CURRENT_LIST_FILE} which package provides it")
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES packages_of_${component})
+  list(APPEND depthgrid_components ${component})
+  string(APPEND depthgrid_component_packages "set(_depthgrid_packages_of_${component} \"${packages_of_${component}}\")\n")
+endforeach()
+
 configure_package_config_file(
   "${PROJECT_SOURCE_DIR}/cmake/depthgridConfig.cmake.in" "${PROJECT_BINARY_DIR}/depthgridConfig.cmake"
   INSTALL_DESTINATION ${depthgrid_package_dir})

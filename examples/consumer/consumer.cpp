@@ -11,7 +11,7 @@
 
 int main() try {
   const depthgrid::input::RigFile file = depthgrid::input::parse_rig(R"({
-    "name": "cell", "depth_scale_m": 0.001, "cameras": [{
+    "name": "cell", "depth": {"metres_per_unit": 0.001}, "cameras": [{
       "id": "front", "width": 320, "height": 240, "fx": 260.0, "fy": 260.0, "cx": 159.5, "cy": 119.5,
       "T_world_cam": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]})",
                                                                      "rig in consumer.cpp");
