@@ -289,11 +289,11 @@ bool CameraSpace::frees_box(const WorldBox& box, const std::optional<ViewLimits>
   return box.half_diagonal_m() < 4 * largest_reach_m && !ball_meets_not_free(box.centre(), radius_m);
 }
 
-bool CameraSpace::covers(const Eigen::Vector3d& p_world) const {
-  return in_view(p_world, {std::nextafter(near_m_, kInfinity), kInfinity});
-}
+ViewLimits CameraSpace::view_limits() const { return {std::nextafter(near_m_, kInfinity), kInfinity}; }
 
-bool CameraSpace::covers_nothing_of(const WorldBox& box) const { return outside_view(box, {near_m_, kInfinity}); }
+bool CameraSpace::covers(const Eigen::Vector3d& p_world) const { return in_view(p_world, view_limits()); }
+
+bool CameraSpace::covers_nothing_of(const WorldBox& box) const { return outside_view(box, view_limits()); }
 
 bool CameraSpace::in_view(const Eigen::Vector3d& p_world, const ViewLimits& limits) const {
   const Eigen::Vector3d p = to_camera(p_world);

@@ -65,6 +65,8 @@ class CameraSpace {
 
   /// x projects inside the image with z > near_k, whatever was measured.
   [[nodiscard]] bool covers(const Eigen::Vector3d& p_world) const;
+  /// The depths beyond near_k.
+  [[nodiscard]] ViewLimits view_limits() const;
   /// True only if the camera covers no point of the box.
   [[nodiscard]] bool covers_nothing_of(const WorldBox& box) const;
 

@@ -54,15 +54,22 @@ bool Reference::holds_no_obstacle(const WorldBox& box) const {
   if (frustum != nullptr && cameras_[frustum->principal].outside_view(box, {frustum->d_min_m, frustum->d_max_m})) {
     return true;  // of the outside only the border counts, and that is looked at once, in distance()
   }
-  if (uncovered_ == Policy::ignored && std::all_of(cameras_.begin(), cameras_.end(), [&](const CameraSpace& camera) {
-        return camera.covers_nothing_of(box);
-      })) {
+  std::vector<std::size_t> covering;
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    if (uncovered_ == Policy::ignored && !cameras_[k].covers_nothing_of(box)) {
+      covering.push_back(k);
+    }
+  }
+  if (uncovered_ == Policy::ignored && covering.empty()) {
     return true;
   }
   for (std::size_t k = 0; k < cameras_.size(); ++k) {
     std::optional<ViewLimits> limits;
     if (frustum != nullptr && frustum->principal == k) {
       limits = ViewLimits{frustum->d_min_m, frustum->d_max_m};
+    }
+    if (uncovered_ == Policy::ignored && covering.size() == 1 && covering.front() == k) {
+      limits = cameras_[k].view_limits();  // beyond this camera's view nothing counts
     }
     if (cameras_[k].frees_box(box, limits)) {
       return true;

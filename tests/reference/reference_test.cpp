@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <iostream>
 
-#include "reference/environment.hpp"
 #include "reference/random_problem.hpp"
 #include "reference/second_opinion.hpp"
+#include "support/random_run.hpp"
 
 namespace depthgrid::reference {
 namespace {
@@ -17,9 +17,10 @@ using Eigen::Vector3d;
 
 /// Calls check(problem, description) for `count` seeds with the given options.
 template <class Check>
-void for_random_problems(RandomOptions options, std::uint64_t count, Check&& check) {
-  for (std::uint64_t i = 0; i < test_count(count); ++i) {
-    options.seed = test_seed() + i;
+void for_random_problems(RandomOptions options, std::int64_t count, Check&& check) {
+  const test::RandomRun run = test::random_run(count);
+  for (std::int64_t i = 0; i < run.count; ++i) {
+    options.seed = run.seed + static_cast<std::uint64_t>(i);
     const RandomProblem random = make_random_problem(options);
     SCOPED_TRACE(to_line(options));
     check(random);

@@ -1,0 +1,69 @@
+// The corrected evaluation on the depth grid against the oracle: it must never over-estimate. Its obstacle set is made
+// of whole cells and contains the exact one, so there is no cell term on that side, only rounding.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <vector>
+
+#include "depthgrid/grid/evaluation.hpp"
+#include "reference/random_problem.hpp"
+#include "reference/reference.hpp"
+#include "support/random_run.hpp"
+
+namespace depthgrid::reference {
+namespace {
+
+/// Single-precision depths and projections.
+constexpr double kRoundingM = 1e-5;
+
+grid::GridEvaluator make_evaluator(const RandomProblem& random) {
+  grid::EvaluationSettings settings;
+  settings.variant = grid::Variant::corrected;
+  settings.outside = random.outside_is_obstacle ? grid::OutsideSpace::obstacle : grid::OutsideSpace::ignored;
+  settings.rho_m = random.rho_m;
+  settings.sensor = random.sensor;
+  settings.pose = random.pose;
+  const grid::DepthQuantisation quantisation{random.d_min_m, random.step_m, 0.0, random.cell_count};
+  grid::GridEvaluator evaluator(random.rig, random.principal, quantisation, settings);
+  evaluator.update(random.frames);
+  return evaluator;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+TEST(GridAgainstReference, CorrectedNeverOverEstimates) {
+  const test::RandomRun run = test::random_run(150);
+  std::vector<double> under_m;
+  int beyond = 0;
+  for (std::int64_t i = 0; i < run.count; ++i) {
+    RandomOptions options;
+    options.seed = run.seed + static_cast<std::uint64_t>(i);
+    options.width_px = 16 + 8 * static_cast<int>(options.seed % 6);
+    const RandomProblem random = make_random_problem(options);
+    const Reference reference(random.problem());
+    const grid::GridEvaluator evaluator = make_evaluator(random);
+    for (const Eigen::Vector3d& p_world : random.points_world) {
+      const Interval interval = reference.distance(p_world);
+      const double answer_m = evaluator.evaluate(p_world).nearest.distance_m;
+      ASSERT_LE(answer_m, interval.hi_m.value_or(random.rho_m) + kRoundingM)
+          << "problem " << to_line(options) << ", point " << p_world.transpose() << ", interval [" << interval.lo_m
+          << ", " << interval.hi_m.value_or(random.rho_m) << "]; again with " << run.reproduce();
+      if (interval.hi_m && *interval.hi_m > 0) {
+        under_m.push_back(std::max(0.0, interval.lo_m - answer_m));
+      } else if (!interval.hi_m) {
+        ++beyond;
+      }
+    }
+  }
+  ASSERT_FALSE(under_m.empty());
+  std::cout << "  under-estimate of " << under_m.size() << " answers: median " << quantile(under_m, 0.5) << " m, 95 % "
+            << quantile(under_m, 0.95) << " m, largest " << under_m.back() << " m; " << beyond
+            << " points with nothing within rho\n";
+}
+
+}  // namespace
+}  // namespace depthgrid::reference
