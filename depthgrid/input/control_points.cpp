@@ -22,11 +22,12 @@ struct Value {
 
 struct Place {
   const std::string& name;
-  std::size_t line;
+  std::size_t line;  ///< from 1; 0: the text is a single value of the command line
 };
 
 [[noreturn]] void fail_at(const Place& place, const Value& value, const std::string& rule) {
-  fail(place.name, ": line ", place.line, ", column ", value.column, ": ", rule);
+  const std::string line = place.line > 0 ? "line " + std::to_string(place.line) + ", " : std::string();
+  fail(place.name, ": ", line, "column ", value.column, ": ", rule);
 }
 
 bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
@@ -171,7 +172,7 @@ ControlPoints load_control_points(const std::filesystem::path& file) {
 
 ControlPoint parse_control_point(std::string_view text, const std::string& id) {
   const std::string name = "control point '" + std::string(text) + "'";
-  const Place place{name, 1};
+  const Place place{name, 0};
   const std::vector<Value> values = split(text);
   if (values.size() != 3) {
     fail_at(place, values[0], std::to_string(values.size()) + " values, must be 3 (x,y,z in metres)");

@@ -15,6 +15,14 @@ std::filesystem::path rig_path(const std::filesystem::path& path) {
   return std::filesystem::is_directory(path, ignored) ? path / "rig.json" : path;
 }
 
+std::size_t index_of(const Rig& rig, const std::string& id, const std::string& name) {
+  try {
+    return camera_index(rig, id);
+  } catch (const Error& error) {
+    fail(name, ": ", error.what());
+  }
+}
+
 /// The file with only the cameras of `ids`, in that order.
 RigFile select(RigFile all, const std::vector<std::string>& ids, const std::string& name) {
   if (ids.empty()) {
@@ -28,7 +36,7 @@ RigFile select(RigFile all, const std::vector<std::string>& ids, const std::stri
     if (!seen.insert(id).second) {
       fail(name, ": camera '", id, "' is chosen twice");
     }
-    const std::size_t k = camera_index(all.rig, id);
+    const std::size_t k = index_of(all.rig, id, name);
     chosen.rig.cameras.push_back(all.rig.cameras[k]);
     chosen.depth_files.push_back(all.depth_files[k]);
   }
@@ -45,10 +53,9 @@ bool distorts(const Distortion& distortion) noexcept {
 }  // namespace
 
 Recording::Recording(const std::filesystem::path& path, const RecordingOptions& options) {
-  const std::filesystem::path rig_file = rig_path(path);
-  const std::string name = rig_file.string();
-  folder_ = rig_file.parent_path();
-  file_ = select(load_rig(rig_file), options.camera_ids, name);
+  rig_file_ = rig_path(path);
+  const std::string name = rig_file_.string();
+  file_ = select(load_rig(rig_file_), options.camera_ids, name);
   channels_.resize(file_.rig.cameras.size());
   frames_.resize(file_.rig.cameras.size());
   for (std::size_t k = 0; k < file_.rig.cameras.size(); ++k) {
@@ -71,12 +78,12 @@ Recording::Recording(const std::filesystem::path& path, const RecordingOptions& 
 
 std::filesystem::path Recording::depth_file(int index, std::size_t camera) const {
   if (index < 0 || index >= frame_count()) {
-    fail(folder_.string(), ": there is no frame index ", index, ", must be from 0 to ", frame_count() - 1);
+    fail(rig_file_.string(), ": there is no frame index ", index, ", must be from 0 to ", frame_count() - 1);
   }
   if (camera >= file_.depth_files.size()) {
-    fail(folder_.string(), ": there is no camera index ", camera, ", must be below ", file_.depth_files.size());
+    fail(rig_file_.string(), ": there is no camera index ", camera, ", must be below ", file_.depth_files.size());
   }
-  return folder_ / depth_file_name(file_.depth_files[camera], frame_number(index));
+  return rig_file_.parent_path() / depth_file_name(file_.depth_files[camera], frame_number(index));
 }
 
 std::span<const Frame> Recording::read(int index) {

@@ -55,7 +55,7 @@ class Recording {
     DepthImage distorted;
     DepthImage undistorted;
   };
-  std::filesystem::path folder_;
+  std::filesystem::path rig_file_;
   RigFile file_;  ///< reduced to the chosen cameras
   std::vector<Channel> channels_;
   std::vector<Frame> frames_;
