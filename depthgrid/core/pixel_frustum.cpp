@@ -117,10 +117,8 @@ double squared_distance(const PixelFrustum& frustum, const Eigen::Vector3d& p_ca
 
 NearestPoint nearest_point_letter(const PinholeCamera& camera, int u, int v, double d1_m, double d2_m,
                                   const DepthPoint& p) noexcept {
-  const double o_x_px = std::min(std::max(p.x_px, static_cast<double>(u)), u + 1.0);  // (5)
-  const double o_y_px = std::min(std::max(p.y_px, static_cast<double>(v)), v + 1.0);
-  const double o_d_m = std::min(std::max(p.depth_m, d1_m), d2_m);                       // (6)
-  return from_point(deproject(camera, {o_x_px, o_y_px, o_d_m}), deproject(camera, p));  // (7)
+  const Eigen::Vector3d p_camera = deproject(camera, p);
+  return from_point(p_camera + LetterDistance(camera, p).vector(u, v, d1_m, d2_m), p_camera);
 }
 
 }  // namespace depthgrid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 
 #include "depthgrid/core/camera.hpp"
@@ -42,5 +43,33 @@ struct NearestPoint {
 /// surface); it must be finite unless p.depth_m < d1_m.
 [[nodiscard]] NearestPoint nearest_point_letter(const PinholeCamera& camera, int u, int v, double d1_m, double d2_m,
                                                 const DepthPoint& p) noexcept;
+
+/// Equations (5)-(7) for one point and many pixels: what depends on the point alone is computed once.
+class LetterDistance {
+ public:
+  /// `p` is the point in depth space, p.depth_m > 0.
+  LetterDistance(const PinholeCamera& camera, const DepthPoint& p) noexcept
+      : camera_(camera),
+        p_(p),
+        x_px_m_((p.x_px - camera.cx_px) * p.depth_m),
+        y_px_m_((p.y_px - camera.cy_px) * p.depth_m),
+        inverse_fx_(1.0 / camera.fx_px),
+        inverse_fy_(1.0 / camera.fy_px) {}
+
+  /// The vector (v_x v_y v_z) of (7) from the point to the cell, camera frame, metres. Arguments as above.
+  [[nodiscard]] Eigen::Vector3d vector(int u, int v, double d1_m, double d2_m) const noexcept {
+    const double o_x_px = std::min(std::max(p_.x_px, static_cast<double>(u)), u + 1.0);  // (5)
+    const double o_y_px = std::min(std::max(p_.y_px, static_cast<double>(v)), v + 1.0);
+    const double o_d_m = std::min(std::max(p_.depth_m, d1_m), d2_m);  // (6)
+    return {((o_x_px - camera_.cx_px) * o_d_m - x_px_m_) * inverse_fx_,
+            ((o_y_px - camera_.cy_px) * o_d_m - y_px_m_) * inverse_fy_, o_d_m - p_.depth_m};  // (7)
+  }
+
+ private:
+  PinholeCamera camera_;
+  DepthPoint p_;
+  double x_px_m_, y_px_m_;
+  double inverse_fx_, inverse_fy_;
+};
 
 }  // namespace depthgrid

@@ -1,5 +1,6 @@
 #include "depthgrid/grid/closed_form_map.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "depthgrid/core/error.hpp"
@@ -7,11 +8,10 @@
 namespace depthgrid::grid {
 
 ClosedFormMap::ClosedFormMap(const DepthGrid& grid, std::span<const SecondaryCamera> secondaries) {
-  for (int n = 0; n <= grid.count(); ++n) {
-    cells_.boundary_m.push_back(static_cast<float>(grid.boundary_m(n)));
-    if (n < grid.count()) {
-      cells_.centre_m.push_back(static_cast<float>(0.5 * (grid.boundary_m(n) + grid.boundary_m(n + 1))));
-    }
+  for (int n = -kPadding; n <= grid.count() + kPadding; ++n) {
+    const int begin = std::clamp(n, 0, grid.count() - 1);
+    boundary_m_.push_back(static_cast<float>(grid.boundary_m(std::clamp(n, 0, grid.count()))));
+    centre_m_.push_back(static_cast<float>(0.5 * (grid.boundary_m(begin) + grid.boundary_m(begin + 1))));
   }
   const PinholeCamera& p = grid.principal();
   for (const SecondaryCamera& secondary : secondaries) {
@@ -44,19 +44,14 @@ ClosedFormMap::Ray ClosedFormMap::ray(int u, int v, std::size_t k) const noexcep
   const Camera& camera = cameras_[k];
   const auto x = static_cast<float>(u);
   const auto y = static_cast<float>(v);
-  Ray ray;
-  ray.cells_ = &cells_;
-  ray.a_x_ = camera.a[0][0] + x * camera.a[0][1] + y * camera.a[0][2];
-  ray.a_y_ = camera.a[1][0] + x * camera.a[1][1] + y * camera.a[1][2];
-  ray.a_z_ = camera.a[2][0] + x * camera.a[2][1] + y * camera.a[2][2];
-  ray.a_z_smallest_ = ray.a_z_ - camera.half_spread_z;
-  ray.front_shift_ = ray.a_z_smallest_ < 0.0F ? 1 : 0;
-  ray.b_x_ = camera.b[0];
-  ray.b_y_ = camera.b[1];
-  ray.b_z_ = camera.b[2];
-  ray.width_px_ = camera.width_px;
-  ray.height_px_ = camera.height_px;
-  return ray;
+  const float a_z = camera.a[2][0] + x * camera.a[2][1] + y * camera.a[2][2];
+  const float a_z_smallest = a_z - camera.half_spread_z;
+  // Where depth falls along the ray the cell's far end is the one nearer to the secondary camera.
+  const int front_shift = a_z_smallest < 0.0F ? 1 : 0;
+  return Ray({centre_m_.data() + kPadding, boundary_m_.data() + kPadding + front_shift,
+              camera.a[0][0] + x * camera.a[0][1] + y * camera.a[0][2],
+              camera.a[1][0] + x * camera.a[1][1] + y * camera.a[1][2], a_z, a_z_smallest, camera.b[0], camera.b[1],
+              camera.b[2], camera.width_px, camera.height_px});
 }
 
 }  // namespace depthgrid::grid

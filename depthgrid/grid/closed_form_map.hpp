@@ -43,29 +43,36 @@ enum class Confirmation : std::uint8_t {
 /// Map storage that needs no memory. Immutable after construction.
 class ClosedFormMap {
  public:
-  /// Depth limits and centres of the cells in single precision, shared by all rays.
-  struct Cells {
-    std::vector<float> boundary_m;  ///< count + 1
-    std::vector<float> centre_m;    ///< count
-    bool operator==(const Cells&) const = default;
+  /// One principal pixel seen from one secondary camera: its coefficients, so that several cells can be computed at
+  /// once.
+  struct Line {
+    const float* centre_m;  ///< centre of cell n; readable from -kPadding to count + kPadding - 1
+    const float* front_m;   ///< the end of cell n that is nearer to the secondary camera; readable as above
+    float a_x, a_y, a_z, a_z_smallest;
+    float b_x, b_y, b_z;
+    float width_px, height_px;
   };
+  /// Cells that may be read, without meaning, on either side of the grid.
+  static constexpr int kPadding = 16;
 
   /// One principal pixel seen from one secondary camera.
   class Ray {
    public:
+    Ray() = default;
+    explicit Ray(const Line& line) noexcept : line_(line) {}
+
     /// The pixel that contains the projection of the cell's centre. False when that is outside the image or the cell
     /// reaches behind the camera. 0 <= n < count.
     [[nodiscard]] bool pixel(int n, CellPixel& result) const noexcept {
-      const float centre_m = cells_->centre_m[static_cast<std::size_t>(n)];
-      const float front_m = cells_->boundary_m[static_cast<std::size_t>(n + front_shift_)];
-      const float d_start_m = front_m * a_z_smallest_ + b_z_;
+      const float centre_m = line_.centre_m[n];
+      const float d_start_m = line_.front_m[n] * line_.a_z_smallest + line_.b_z;
       if (!(d_start_m > 0.0F)) {
         return false;
       }
-      const float inverse = 1.0F / (centre_m * a_z_ + b_z_);
-      const float x_px = (centre_m * a_x_ + b_x_) * inverse;
-      const float y_px = (centre_m * a_y_ + b_y_) * inverse;
-      if (!(x_px >= 0.0F && y_px >= 0.0F && x_px < width_px_ && y_px < height_px_)) {
+      const float inverse = 1.0F / (centre_m * line_.a_z + line_.b_z);
+      const float x_px = (centre_m * line_.a_x + line_.b_x) * inverse;
+      const float y_px = (centre_m * line_.a_y + line_.b_y) * inverse;
+      if (!(x_px >= 0.0F && y_px >= 0.0F && x_px < line_.width_px && y_px < line_.height_px)) {
         return false;
       }
       result = {static_cast<int>(x_px), static_cast<int>(y_px), d_start_m};
@@ -78,16 +85,13 @@ class ClosedFormMap {
       if (!pixel(n, p)) {
         return Confirmation::not_involved;
       }
-      return grid::confirm(depth_m[p.v_px * static_cast<int>(width_px_) + p.u_px], p.d_start_m);
+      return grid::confirm(depth_m[p.v_px * static_cast<int>(line_.width_px) + p.u_px], p.d_start_m);
     }
 
+    [[nodiscard]] const Line& line() const noexcept { return line_; }
+
    private:
-    friend class ClosedFormMap;
-    const Cells* cells_ = nullptr;
-    float a_x_ = 0, a_y_ = 0, a_z_ = 0, a_z_smallest_ = 0;
-    float b_x_ = 0, b_y_ = 0, b_z_ = 0;
-    float width_px_ = 0, height_px_ = 0;
-    int front_shift_ = 0;  ///< 1 where the cell's far end is the one nearer to the secondary camera
+    Line line_;  // uninitialised by default: arrays of rays are filled per pixel, camera by camera
   };
 
   /// Throws Error when a secondary camera's intrinsics are invalid or its pose is not finite.
@@ -98,7 +102,7 @@ class ClosedFormMap {
   [[nodiscard]] Ray ray(int u, int v, std::size_t k) const noexcept;
   /// Equal maps give equal answers in every cell.
   [[nodiscard]] bool operator==(const ClosedFormMap& other) const noexcept {
-    return cells_ == other.cells_ && cameras_ == other.cameras_;
+    return boundary_m_ == other.boundary_m_ && centre_m_ == other.centre_m_ && cameras_ == other.cameras_;
   }
 
  private:
@@ -109,7 +113,9 @@ class ClosedFormMap {
     float width_px, height_px;
     bool operator==(const Camera&) const = default;
   };
-  Cells cells_;
+  /// Single-precision depths of the cells, with kPadding values on either side.
+  std::vector<float> boundary_m_;
+  std::vector<float> centre_m_;
   std::vector<Camera> cameras_;
 };
 

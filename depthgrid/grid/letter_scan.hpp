@@ -15,6 +15,7 @@
 #include <span>
 #include <utility>
 
+#include "depthgrid/grid/column_search.hpp"
 #include "depthgrid/grid/depth_grid.hpp"
 #include "depthgrid/grid/evaluation.hpp"
 #include "depthgrid/grid/observation.hpp"
@@ -29,6 +30,8 @@ inline constexpr std::size_t kMostSecondaries = 31;
 /// Scans `window` for one control point. `secondary_depths_m` are the dense images of the secondary cameras.
 template <class Map>
 class LetterScan {
+  using Ray = decltype(std::declval<const Map&>().ray(0, 0, 0));
+
  public:
   LetterScan(const DepthGrid& grid, const Map& map, const Observation& principal,
              std::span<const float* const> secondary_depths_m, const EvaluationSettings& settings,
@@ -41,6 +44,8 @@ class LetterScan {
         point_(point),
         obstacles_(obstacles),
         count_(count),
+        distance_(grid.principal(), point.p),
+        squared_bound_m2_(settings.rho_m * settings.rho_m),
         cell_of_point_(grid.cell_of(point.p.depth_m)),
         cells_within_rho_(cells_within_rho(point.p.depth_m)) {}
 
@@ -54,7 +59,7 @@ class LetterScan {
     } else if (d_o > d_p + settings_.rho_m || d_o >= grid_.d_max_m()) {
       return;  // (i), and shadows that begin beyond the grid
     } else if (d_o >= d_p) {
-      take(u, v, nearest_point_letter(grid_.principal(), u, v, d_o, d_o, point_.p));  // (ii)
+      take(u, v, distance_.vector(u, v, d_o, d_o));  // (ii), (5)-(7)
     } else {
       behind_surface(u, v, d_o);  // (iii); without measurement d_o is 0: everything on the ray needs confirmation
     }
@@ -70,15 +75,9 @@ class LetterScan {
     const int last = std::min(cell_of_point_ + cells_within_rho_, grid_.count() - 1);
     const int surface = cell_of_point_ + lower_end(d_o);
     const int first = std::max({surface, cell_of_point_ - cells_within_rho_ - 1, 0});
-    for (int j = 0; cell_of_point_ + j <= last || cell_of_point_ - j >= first; ++j) {
-      const int beyond = cell_of_point_ + j;
-      const int before = cell_of_point_ - j;
-      const bool found_beyond = beyond >= first && beyond <= last && confirmed(beyond);
-      const bool found_before = j > 0 && before >= first && before <= last && confirmed(before);
-      if (found_beyond || found_before) {
-        take_nearer(u, v, found_beyond ? beyond : before, found_before ? before : beyond);
-        return;
-      }
+    const ColumnHit hit = search(cell_of_point_, first, last);
+    if (hit.beyond || hit.before) {
+      take_nearer(u, v, cell_of_point_ + (hit.beyond ? hit.j : -hit.j), cell_of_point_ + (hit.before ? -hit.j : hit.j));
     }
   }
 
@@ -88,11 +87,10 @@ class LetterScan {
     begin_column(u, v);
     const int robot = grid_.cell_of(d_r);
     const int last = std::min(robot + cells_within_rho(d_r), grid_.count() - 1);
-    for (int n = std::max(robot + 1, 0); n <= last; ++n) {
-      if (confirmed(n)) {
-        take(u, v, cell_obstacle(u, v, n));
-        return;
-      }
+    const int first = std::max(robot + 1, 0);
+    const ColumnHit hit = first <= last ? search(first, first, last) : ColumnHit{};
+    if (hit.beyond) {
+      take(u, v, to_cell(u, v, first + hit.j));
     }
   }
 
@@ -102,15 +100,12 @@ class LetterScan {
     }
   }
 
-  /// "The existence of an obstacle is considered only if all involved cameras do confirm its presence."
-  [[nodiscard]] bool confirmed(int n) noexcept {
-    ++count_.cells;
-    for (std::size_t k = 0; k < secondary_depths_m_.size(); ++k) {
-      if (rays_[k].confirm(n, secondary_depths_m_[k]) == Confirmation::denied) {
-        return false;
-      }
-    }
-    return true;
+  [[nodiscard]] ColumnHit search(int start, int first, int last) noexcept {
+    const std::size_t cameras = secondary_depths_m_.size();
+    const ColumnHit hit =
+        search_outwards(std::span<const Ray>(rays_.data(), cameras), secondary_depths_m_, start, first, last);
+    count_.cells += cells_visited(hit, start, first, last);
+    return hit;
   }
 
   /// floor((d_o - d_p) / dd), a negative number.
@@ -131,18 +126,26 @@ class LetterScan {
     return grid_.cell_of(d_m + settings_.rho_m) - grid_.cell_of(d_m);
   }
 
-  [[nodiscard]] NearestPoint cell_obstacle(int u, int v, int n) const noexcept {
-    return nearest_point_letter(grid_.principal(), u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1), point_.p);
+  [[nodiscard]] Eigen::Vector3d to_cell(int u, int v, int n) const noexcept {
+    return distance_.vector(u, v, grid_.boundary_m(n), grid_.boundary_m(n + 1));
   }
 
   /// Of two cells confirmed at the same |j| the nearer one stands for the pixel.
   void take_nearer(int u, int v, int n, int other) noexcept {
-    const NearestPoint obstacle = cell_obstacle(u, v, n);
-    const NearestPoint second = other == n ? obstacle : cell_obstacle(u, v, other);
-    take(u, v, second.distance_m < obstacle.distance_m ? second : obstacle);
+    const Eigen::Vector3d to_first = to_cell(u, v, n);
+    const Eigen::Vector3d to_second = other == n ? to_first : to_cell(u, v, other);
+    take(u, v, to_second.squaredNorm() < to_first.squaredNorm() ? to_second : to_first);
   }
 
-  void take(int u, int v, const NearestPoint& obstacle) noexcept {
+  /// `to_obstacle` is the vector (v_x v_y v_z) of (7).
+  void take(int u, int v, const Eigen::Vector3d& to_obstacle) noexcept {
+    const double squared_m2 = to_obstacle.squaredNorm();
+    if (!(squared_m2 < squared_bound_m2_)) {
+      return;
+    }
+    const double distance_m = std::sqrt(squared_m2);
+    const NearestPoint obstacle{point_.p_camera + to_obstacle, distance_m,
+                                distance_m > 0 ? (to_obstacle / distance_m).eval() : Eigen::Vector3d::Zero().eval()};
     obstacles_.take_nearest(obstacle, u, v);
     if (settings_.collect == Collect::hybrid) {
       obstacles_.add_direction(obstacle);  // (10), (11)
@@ -157,10 +160,12 @@ class LetterScan {
   const ControlPoint& point_;
   ObstacleSet& obstacles_;
   EvaluationCount& count_;
+  LetterDistance distance_;
+  double squared_bound_m2_;
   int cell_of_point_;
   int cells_within_rho_;
   /// The current pixel's ray in every secondary camera.
-  std::array<decltype(std::declval<const Map&>().ray(0, 0, 0)), kMostSecondaries> rays_;
+  std::array<Ray, kMostSecondaries> rays_;
 };
 
 }  // namespace depthgrid::grid

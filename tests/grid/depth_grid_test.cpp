@@ -8,8 +8,8 @@
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/grid/surveillance_window.hpp"
-#include "reference/environment.hpp"
 #include "reference/random_problem.hpp"
+#include "support/random_run.hpp"
 
 namespace depthgrid::grid {
 namespace {
@@ -30,8 +30,8 @@ TEST(DepthGrid, TheLettersOwnGrid) {
 }
 
 TEST(DepthGrid, EveryDepthLiesInItsCell) {
-  reference::Random random(reference::test_seed());
-  for (std::uint64_t i = 0; i < reference::test_count(2000); ++i) {
+  reference::Random random(test::random_run(0).seed);
+  for (std::int64_t i = 0; i < test::random_run(2000).count; ++i) {
     const DepthQuantisation q{random.uniform(0, 1), random.uniform(0.002, 0.1),
                               random.chance(0.5) ? 0.0 : random.uniform(0, 0.05), random.integer(1, 200)};
     const DepthGrid grid(kCamera, q);
@@ -103,8 +103,8 @@ TEST(SurveillanceWindow, UndefinedNearTheCameraMeansTheWholeImage) {
 }
 
 TEST(SurveillanceWindow, CoversEveryPointOfTheSphereAndNotMuchMore) {
-  reference::Random random(reference::test_seed());
-  for (std::uint64_t i = 0; i < reference::test_count(2000); ++i) {
+  reference::Random random(test::random_run(0).seed);
+  for (std::int64_t i = 0; i < test::random_run(2000).count; ++i) {
     const double rho = random.uniform(0.05, 0.6);
     const Eigen::Vector3d p(random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-0.2, 3));
     const PixelWindow window = sphere_window(kCamera, p, rho);

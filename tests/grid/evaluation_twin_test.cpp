@@ -7,8 +7,8 @@
 #include "depthgrid/grid/cell_carver.hpp"
 #include "depthgrid/grid/evaluation.hpp"
 #include "grid/letter_twin.hpp"
-#include "reference/environment.hpp"
 #include "reference/random_problem.hpp"
+#include "support/random_run.hpp"
 
 namespace depthgrid::grid {
 namespace {
@@ -57,8 +57,8 @@ EvaluationSettings settings_of(const RandomProblem& problem, Variant variant, Co
 /// Visits `count` random problems; the seed printed with a failure makes the same problem again.
 template <class Check>
 void for_random_problems(int count, Check&& check) {
-  const std::uint64_t first = reference::test_seed();
-  count = static_cast<int>(reference::test_count(static_cast<std::uint64_t>(count)));
+  const std::uint64_t first = test::random_run(0).seed;
+  count = static_cast<int>(test::random_run(count).count);
   for (int i = 0; i < count; ++i) {
     reference::RandomOptions options;
     options.seed = first + static_cast<std::uint64_t>(i);
