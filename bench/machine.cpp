@@ -1,0 +1,51 @@
+#include "machine.hpp"
+
+#include <array>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+namespace depthgrid::bench {
+namespace {
+
+std::string processor() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(cpuinfo, line)) {
+    const auto colon = line.find(':');
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown processor";
+}
+
+std::string instruction_sets() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  std::string sets = "x86-64";
+  if (__builtin_cpu_supports("avx2") != 0) {
+    sets += ", AVX2";
+  }
+  if (__builtin_cpu_supports("avx512f") != 0) {
+    sets += ", AVX-512";
+  }
+  return sets;
+#else
+  return "not x86";
+#endif
+}
+
+}  // namespace
+
+std::string machine_line() {
+  const std::time_t now = std::time(nullptr);
+  std::tm date{};
+  gmtime_r(&now, &date);
+  std::array<char, 16> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
+  return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores (" + instruction_sets() +
+         "), one used; built for baseline by " + "g++ " + __VERSION__ + "; " + text.data();
+}
+
+}  // namespace depthgrid::bench
