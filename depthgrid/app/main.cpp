@@ -7,6 +7,7 @@
 
 #include "depthgrid/app/distances_command.hpp"
 #include "depthgrid/app/info_command.hpp"
+#include "depthgrid/app/map_command.hpp"
 #include "depthgrid/app/usage_error.hpp"
 #include "depthgrid/app/version.hpp"
 
@@ -41,6 +42,7 @@ int run(int argc, char** argv) {
       "'depthgrid COMMAND --help' explains a command. Exit codes: 0 done, 1 error, 2 broken command line.");
   depthgrid::app::add_distances_command(app);
   depthgrid::app::add_info_command(app);
+  depthgrid::app::add_map_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help and --version
