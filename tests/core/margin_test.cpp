@@ -159,6 +159,11 @@ TEST(FreeDepth, WithoutMarginIsTheDepthItself) {
   }
 }
 
+TEST(FreeDepth, IsNotRoundedUpByTheDifferenceEither) {
+  // 1 - (0.25 + 2^-54) lies half a step of double precision below 0.75 and rounds to it.
+  EXPECT_LT(free_of_pixel(1.0F, 0, 0, {std::nextafter(0.25, 1.0), 0, 0, 0}), 0.75F);
+}
+
 TEST(FreeDepth, BordersAndHolesReachAsFarAsTheFilter) {
   for (const int reach_px : {1, 2, 3}) {
     constexpr int kSide = 15;
