@@ -119,4 +119,18 @@ class ClosedFormMap {
   std::vector<Camera> cameras_;
 };
 
+inline ClosedFormMap::Ray ClosedFormMap::ray(int u, int v, std::size_t k) const noexcept {
+  const Camera& camera = cameras_[k];
+  const auto x = static_cast<float>(u);
+  const auto y = static_cast<float>(v);
+  const float a_z = camera.a[2][0] + x * camera.a[2][1] + y * camera.a[2][2];
+  const float a_z_smallest = a_z - camera.half_spread_z;
+  // Where depth falls along the ray the cell's far end is the one nearer to the secondary camera.
+  const int front_shift = a_z_smallest < 0.0F ? 1 : 0;
+  return Ray({centre_m_.data() + kPadding, boundary_m_.data() + kPadding + front_shift,
+              camera.a[0][0] + x * camera.a[0][1] + y * camera.a[0][2],
+              camera.a[1][0] + x * camera.a[1][1] + y * camera.a[1][2], a_z, a_z_smallest, camera.b[0], camera.b[1],
+              camera.b[2], camera.width_px, camera.height_px});
+}
+
 }  // namespace depthgrid::grid

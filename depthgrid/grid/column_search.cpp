@@ -63,8 +63,8 @@ HWY_INLINE std::uint32_t confirmed_lanes(std::span<const ClosedFormMap::Ray> ray
   return alive;
 }
 
-ColumnHit search_outwards(std::span<const ClosedFormMap::Ray> rays, std::span<const float* const> depths_m, int start,
-                          int first, int last) {
+ColumnHit search_outwards_wide(std::span<const ClosedFormMap::Ray> rays, std::span<const float* const> depths_m,
+                               int start, int first, int last) {
   const auto lanes = static_cast<int>(hn::Lanes(Floats()));
   for (int j = 0; start + j <= last || start - j >= first; j += lanes) {
     int beyond = kNone;
@@ -92,11 +92,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace depthgrid::grid {
 
-HWY_EXPORT(search_outwards);
+HWY_EXPORT(search_outwards_wide);
 
-ColumnHit search_outwards(std::span<const ClosedFormMap::Ray> rays, std::span<const float* const> depths_m, int start,
-                          int first, int last) noexcept {
-  return HWY_DYNAMIC_DISPATCH(search_outwards)(rays, depths_m, start, first, last);
+ColumnHit search_outwards_wide(std::span<const ClosedFormMap::Ray> rays, std::span<const float* const> depths_m,
+                               int start, int first, int last) noexcept {
+  return HWY_DYNAMIC_DISPATCH(search_outwards_wide)(rays, depths_m, start, first, last);
 }
 
 }  // namespace depthgrid::grid

@@ -45,10 +45,21 @@ template <class Ray>
   return {std::max(last - start, start - first), false, false};
 }
 
-/// The same with the closed form, several cells at once. Requires 0 <= first, last < count.
-[[nodiscard]] ColumnHit search_outwards(std::span<const ClosedFormMap::Ray> rays,
-                                        std::span<const float* const> depths_m, int start, int first,
-                                        int last) noexcept;
+/// The same with the closed form, several cells at once, by the widest instructions of this machine. Requires
+/// 0 <= first <= start <= last < count.
+[[nodiscard]] ColumnHit search_outwards_wide(std::span<const ClosedFormMap::Ray> rays,
+                                             std::span<const float* const> depths_m, int start, int first,
+                                             int last) noexcept;
+
+[[nodiscard]] inline ColumnHit search_outwards(std::span<const ClosedFormMap::Ray> rays,
+                                               std::span<const float* const> depths_m, int start, int first,
+                                               int last) noexcept {
+  // In gray space that every camera shares the first cell decides: not worth a wide look.
+  if (confirmed_by_all(rays, depths_m, start)) {
+    return {0, true, false};
+  }
+  return search_outwards_wide(rays, depths_m, start, first, last);
+}
 
 /// Cells that the walk looked at, one after the other, to end like this.
 [[nodiscard]] inline std::int64_t cells_visited(const ColumnHit& hit, int start, int first, int last) noexcept {

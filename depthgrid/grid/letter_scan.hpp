@@ -38,7 +38,10 @@ class LetterScan {
              const ControlPoint& point, ObstacleSet& obstacles, EvaluationCount& count) noexcept
       : grid_(grid),
         map_(map),
-        principal_(principal),
+        removed_m_(principal.removed_m().data()),
+        is_robot_(principal.is_robot().data()),
+        width_px_(static_cast<std::size_t>(grid.principal().width_px)),
+        beyond_m_(point.p.depth_m + settings.rho_m),
         secondary_depths_m_(secondary_depths_m),
         settings_(settings),
         point_(point),
@@ -52,13 +55,13 @@ class LetterScan {
   /// One pixel of interest: the case distinction of section VI.
   void pixel(int u, int v) noexcept {
     ++count_.pixels;
-    const double d_o = principal_.removed_m().at(u, v);
-    const double d_p = point_.p.depth_m;
-    if (principal_.is_robot()[principal_.removed_m().index(u, v)] != 0) {
+    const std::size_t index = static_cast<std::size_t>(v) * width_px_ + static_cast<std::size_t>(u);
+    const double d_o = removed_m_[index];
+    if (is_robot_[index] != 0) {
       robot_removed(u, v, d_o);  // (iv)
-    } else if (d_o > d_p + settings_.rho_m || d_o >= grid_.d_max_m()) {
+    } else if (d_o > beyond_m_ || d_o >= grid_.d_max_m()) {
       return;  // (i), and shadows that begin beyond the grid
-    } else if (d_o >= d_p) {
+    } else if (d_o >= point_.p.depth_m) {
       take(u, v, distance_.vector(u, v, d_o, d_o));  // (ii), (5)-(7)
     } else {
       behind_surface(u, v, d_o);  // (iii); without measurement d_o is 0: everything on the ray needs confirmation
@@ -144,17 +147,21 @@ class LetterScan {
       return;
     }
     const double distance_m = std::sqrt(squared_m2);
-    const NearestPoint obstacle{point_.p_camera + to_obstacle, distance_m,
-                                distance_m > 0 ? (to_obstacle / distance_m).eval() : Eigen::Vector3d::Zero().eval()};
-    obstacles_.take_nearest(obstacle, u, v);
+    const double inverse = distance_m > 0 ? 1.0 / distance_m : 0.0;
+    if (distance_m < obstacles_.nearest_m()) {
+      obstacles_.take_nearest({point_.p_camera + to_obstacle, distance_m, inverse * to_obstacle}, u, v);
+    }
     if (settings_.collect == Collect::hybrid) {
-      obstacles_.add_direction(obstacle);  // (10), (11)
+      obstacles_.add_direction(inverse * to_obstacle);  // (10), (11)
     }
   }
 
   const DepthGrid& grid_;
   const Map& map_;
-  const Observation& principal_;
+  const float* removed_m_;
+  const std::uint8_t* is_robot_;
+  std::size_t width_px_;
+  double beyond_m_;  ///< d_p + rho
   std::span<const float* const> secondary_depths_m_;
   const EvaluationSettings& settings_;
   const ControlPoint& point_;

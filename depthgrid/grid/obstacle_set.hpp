@@ -33,12 +33,10 @@ class ObstacleSet {
     }
   }
 
-  /// Adds the unit vector to the sum of equation (11).
-  void add_direction(const NearestPoint& obstacle) noexcept {
-    if (obstacle.distance_m < rho_m_) {
-      direction_sum_ += obstacle.direction_camera;
-      ++count_;
-    }
+  /// Adds the unit vector (10) towards an obstacle within rho to the sum of equation (11).
+  void add_direction(const Eigen::Vector3d& direction_camera) noexcept {
+    direction_sum_ += direction_camera;
+    ++count_;
   }
 
   /// Adds the unit vector weighted by the repulsion at its distance.
