@@ -48,11 +48,12 @@ struct Decision {
         beyond_far_m(rule.clamp_beyond_far ? far_m : 0.0F),
         invalid_units(rule.invalid_units) {}
 
-  /// 0 = no measurement. NaN fails the comparisons and ends as 0. No branches, so that rows vectorise.
+  /// 0 = no measurement. NaN fails the comparisons and ends as 0. Selections only, so that rows vectorise.
   [[nodiscard]] float of_metres(float depth_m) const noexcept {
-    const float limited_m = depth_m > far_m ? beyond_far_m : depth_m;
-    const bool valid = (depth_m > 0.0F) & (depth_m >= near_m) & (depth_m <= std::numeric_limits<float>::max());
-    return valid ? limited_m : 0.0F;
+    float result_m = depth_m > far_m ? beyond_far_m : depth_m;
+    result_m = depth_m > 0.0F ? result_m : 0.0F;
+    result_m = depth_m >= near_m ? result_m : 0.0F;
+    return depth_m <= std::numeric_limits<float>::max() ? result_m : 0.0F;
   }
 
   /// The product is rounded once, so a limit written in metres meets the unit it stands for.

@@ -44,7 +44,7 @@ SensorMargin cover_rounding(const SensorMargin& margin) noexcept {
 void reduce_row(const float* measured_m, const SensorMargin& margin, int width_px, float* reduced_m) noexcept {
   const SensorMargin m = margin;  // a copy, so that the compiler knows that the result does not change it
   for (int u = 0; u < width_px; ++u) {
-    const double depth_m = static_cast<double>(measured_m[u]);
+    const auto depth_m = static_cast<double>(measured_m[u]);
     reduced_m[u] = round_towards_zero(depth_m - depth_margin_m(m, depth_m));
   }
 }
@@ -55,12 +55,16 @@ void apply_robot_row(const float* measured_m, const float* near_m, const float* 
   const SensorMargin m = margin;
   constexpr float kLargest = std::numeric_limits<float>::max();
   for (int u = 0; u < width_px; ++u) {
-    const double depth_m = static_cast<double>(measured_m[u]);
-    const bool reaches = static_cast<double>(near_m[u]) <= depth_m - depth_margin_m(m, depth_m);
-    const bool robot =
-        (measured_m[u] > 0.0F) & (near_m[u] > 0.0F) & reaches & (measured_m[u] <= far_m[u]) & (far_m[u] <= kLargest);
-    const float exit_m = std::max(reduced_m[u], far_m[u]);
-    reduced_m[u] = robot ? exit_m : reduced_m[u];
+    const auto depth_m = static_cast<double>(measured_m[u]);
+    const auto near = static_cast<double>(near_m[u]);
+    // One selection after the other instead of `and`, so that the loop vectorises.
+    float result_m = std::max(reduced_m[u], far_m[u]);
+    result_m = measured_m[u] > 0.0F ? result_m : reduced_m[u];
+    result_m = near > 0.0 ? result_m : reduced_m[u];
+    result_m = near <= depth_m - depth_margin_m(m, depth_m) ? result_m : reduced_m[u];
+    result_m = measured_m[u] <= far_m[u] ? result_m : reduced_m[u];
+    result_m = far_m[u] <= kLargest ? result_m : reduced_m[u];
+    reduced_m[u] = result_m;
   }
 }
 
