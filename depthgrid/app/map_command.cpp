@@ -43,7 +43,7 @@ std::string size_text(std::uint64_t bytes) {
   if (size >= 0.1 * kGiB) {
     (void)std::snprintf(text.data(), text.size(), "%.2f GiB", size / kGiB);
   } else {
-    (void)std::snprintf(text.data(), text.size(), "%.1f kB", size / 1000);
+    (void)std::snprintf(text.data(), text.size(), "%.3f MB", size / 1e6);
   }
   return text.data();
 }
@@ -105,7 +105,8 @@ void build(const BuildOptions& options) {
   settings.memory_limit_bytes =
       options.memory_gib ? static_cast<std::uint64_t>(*options.memory_gib * kGiB) : grid::available_memory_bytes();
   const grid::MapMemory memory = grid::estimate_map_memory(depth_grid, secondaries, storage);
-  say(storage_text(storage) + " for " + std::to_string(secondaries.size()) + " secondary cameras needs " +
+  say(storage_text(storage) + " for " + std::to_string(secondaries.size()) +
+      (secondaries.size() == 1 ? " secondary camera needs " : " secondary cameras needs ") +
       (memory.safety_factor > 1 ? "about " : "") + size_text(memory.bytes) + " of memory" +
       (memory.safety_factor > 1 ? " (from a sample, times " + exact_text(memory.safety_factor) + ")" : "") + "; " +
       size_text(*settings.memory_limit_bytes) + " allowed");

@@ -106,8 +106,8 @@ MapFileHeader decode_header(std::span<const std::byte> bytes, std::uint64_t file
   if (fixed.storage != 1 && fixed.storage != 2) {
     fail("storage is ", fixed.storage, ", must be 1 (one pixel a cell) or 2 (full lists)");
   }
-  if (fixed.number_count > number_count(kLargestCameraCount)) {
-    fail("has ", fixed.number_count, " calibration numbers, must be at most ", number_count(kLargestCameraCount));
+  if (fixed.number_count == 0 || fixed.number_count > number_count(kLargestCameraCount)) {
+    fail("has ", fixed.number_count, " calibration numbers, must be between 1 and ", number_count(kLargestCameraCount));
   }
   if (fixed.header_bytes != header_bytes_for(fixed.number_count)) {
     fail("head has ", fixed.header_bytes, " bytes, must have ", header_bytes_for(fixed.number_count), " for ",
