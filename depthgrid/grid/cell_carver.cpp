@@ -46,8 +46,20 @@ bool CellCarver::project(const Edges& edges, double d1_m, double d2_m, Extent& e
   }
   const double e = margin_.translation_m + margin_.rotation_rad * range_m + margin_.time_m;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  extent = {kInfinity, -kInfinity, kInfinity, -kInfinity, kInfinity, -kInfinity};
+  extent = {kInfinity, -kInfinity, kInfinity, -kInfinity, -kInfinity};
   for (const Eigen::Vector3d& corner : corners) {
+    if (!has_margin_) {
+      if (!(corner.z() > std::max(near_m_, 1e-6))) {
+        return false;
+      }
+      const double inverse = 1.0 / corner.z();  // its rounding is far below kGuardPx
+      extent.u_low = std::min(extent.u_low, corner.x() * inverse);
+      extent.u_high = std::max(extent.u_high, corner.x() * inverse);
+      extent.v_low = std::min(extent.v_low, corner.y() * inverse);
+      extent.v_high = std::max(extent.v_high, corner.y() * inverse);
+      extent.z_high = std::max(extent.z_high, corner.z());
+      continue;
+    }
     const double z_low = corner.z() - e;
     const double z_high = corner.z() + e;
     if (!(z_low > std::max(near_m_, 1e-6))) {
@@ -57,7 +69,6 @@ bool CellCarver::project(const Edges& edges, double d1_m, double d2_m, Extent& e
     extent.u_high = std::max(extent.u_high, largest_quotient(corner.x() + e, z_low, z_high));
     extent.v_low = std::min(extent.v_low, -largest_quotient(e - corner.y(), z_low, z_high));
     extent.v_high = std::max(extent.v_high, largest_quotient(corner.y() + e, z_low, z_high));
-    extent.z_low = std::min(extent.z_low, z_low);
     extent.z_high = std::max(extent.z_high, z_high);
   }
   extent.u_low = camera_.fx_px * extent.u_low + camera_.cx_px - kGuardPx;

@@ -31,7 +31,7 @@ class CellCarver {
 
  private:
   struct Extent {
-    double u_low, u_high, v_low, v_high, z_low, z_high;
+    double u_low, u_high, v_low, v_high, z_high;
   };
   [[nodiscard]] bool project(const Edges& edges, double d1_m, double d2_m, Extent& extent) const noexcept;
 

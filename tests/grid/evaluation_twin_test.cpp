@@ -144,7 +144,7 @@ double corrected_twin(const RandomProblem& problem, const DepthGrid& grid, const
 
 TEST(CorrectedScan, EqualsTheNearestOfAllCells) {
   std::int64_t within_rho = 0;
-  for_random_problems(60, [&](const RandomProblem& problem) {
+  for_random_problems(30, [&](const RandomProblem& problem) {
     const DepthGrid grid(problem.rig.cameras[problem.principal].intrinsics, quantisation_of(problem));
     const std::vector<Observation> observations = observe(problem, &problem.sensor);
     const EvaluationSettings settings = settings_of(problem, Variant::corrected, Collect::minimum);
