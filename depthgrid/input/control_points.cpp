@@ -1,6 +1,7 @@
 #include "depthgrid/input/control_points.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -63,7 +64,7 @@ bool is_header(const std::vector<Value>& values) {
   if (values.size() != kFixedColumns && values.size() != kMovingColumns) {
     return false;
   }
-  constexpr std::string_view kNames[kMovingColumns] = {"frame", "id", "x", "y", "z"};
+  constexpr std::array<std::string_view, kMovingColumns> kNames = {"frame", "id", "x", "y", "z"};
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (!equals_ignoring_case(values[k].text, kNames[k + skip])) {
       return false;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
@@ -93,7 +94,7 @@ class KeyCheck {
     }
   }
 
-  const Value& resolve(const Value& schema) const {
+  [[nodiscard]] const Value& resolve(const Value& schema) const {
     const auto reference = schema.FindMember("$ref");
     if (reference == schema.MemberEnd()) {
       return schema;
@@ -138,7 +139,8 @@ std::string excerpt(const Value& value) {
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
       --end;  // not inside a UTF-8 character
     }
-    text.replace(end, std::string::npos, "...");
+    text.resize(end);
+    text += "...";
   }
   return text;
 }

@@ -58,11 +58,13 @@ class DocumentBuilder {
   }
 
   // Not called where numbers come as text, but part of what the reader expects.
+  // NOLINTBEGIN(readability-convert-member-functions-to-static)
   bool Int(int /*value*/) { return false; }
   bool Uint(unsigned /*value*/) { return false; }
   bool Int64(std::int64_t /*value*/) { return false; }
   bool Uint64(std::uint64_t /*value*/) { return false; }
   bool Double(double /*value*/) { return false; }
+  // NOLINTEND(readability-convert-member-functions-to-static)
 
  private:
   bool descend() {

@@ -40,7 +40,7 @@ struct Writer {
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
   auto* writer = static_cast<Writer*>(png_get_error_ptr(png));
-  std::snprintf(writer->message.data(), writer->message.size(), "%s", message);
+  static_cast<void>(std::snprintf(writer->message.data(), writer->message.size(), "%s", message));
   png_longjmp(png, 1);
 }
 

@@ -147,7 +147,7 @@ std::string read_frames(const Value& frames, RigFile& file, const std::string& n
   if (pattern == nullptr) {
     return {};
   }
-  const std::string announced = text_of(*pattern);
+  std::string announced = text_of(*pattern);
   if (at_place(name, "/frames/pattern", [&] { return checked_conversion(announced); }) != announced) {
     fail(name, ": /frames/pattern: '", announced, "' is not a conversion %d or %0Nd and nothing else");
   }
