@@ -33,7 +33,7 @@ std::array<Eigen::Vector3d, 8> corners_of(const PixelFrustum& cell) {
 
 }  // namespace
 
-Mends first_mends(int count) { return {count > 0, count > 1, count > 2, count > 3, count > 4}; }
+Mends first_mends(int count) { return {count > 0, count > 1, count > 2, count > 3, count > 4, count > 5}; }
 
 struct LetterModel::Query {
   Eigen::Vector3d p_camera;
@@ -92,6 +92,9 @@ void LetterModel::visit_pixel(Query& query, int u, int v) const {
   if (squared_distance(pyramid, query.p_camera) >= query.best_m * query.best_m) {
     return;
   }
+  if (query.mends.blind_zone) {
+    take_blind_cells(query, u, v);
+  }
   const double d_o = at(principal_depth_m_, principal_, u, v);
   const double d_p = query.p.depth_m;
   const int within_rho = static_cast<int>(std::floor(problem_.rho_m / problem_.step_m * (1 + 1e-12)));
@@ -124,6 +127,17 @@ void LetterModel::take_cells(Query& query, int u, int v, int first, int last, do
     const PixelFrustum cell = pixel_frustum(principal_, u, v, std::max(boundary_m(n), d_o), boundary_m(n + 1));
     const double distance_m = cell_distance_m(query, u, v, cell.d1_m, cell.d2_m);
     if (cell.d1_m < cell.d2_m && distance_m < query.best_m && confirmed(query, cell, u, v, n)) {
+      query.take(distance_m);
+    }
+  }
+}
+
+void LetterModel::take_blind_cells(Query& query, int u, int v) const {
+  const double near_m = problem_.rig.cameras[problem_.principal].rule.near_m;
+  for (int n = 0; n < problem_.cell_count && boundary_m(n) < near_m; ++n) {
+    const PixelFrustum cell = pixel_frustum(principal_, u, v, boundary_m(n), std::min(boundary_m(n + 1), near_m));
+    const double distance_m = cell_distance_m(query, u, v, cell.d1_m, cell.d2_m);
+    if (distance_m < query.best_m && confirmed(query, cell, u, v, n)) {
       query.take(distance_m);
     }
   }

@@ -19,10 +19,11 @@ struct Mends {
   bool clamp = false;         ///< the exact distance to a cell instead of (5)-(7)
   bool shadow = false;        ///< (ii) looks at confirmed cells behind the surface too
   bool confirmation = false;  ///< a cell is free only if one camera sees all of it free
+  bool blind_zone = false;    ///< nothing nearer than the principal camera's near limit is free by its own measurement
 };
 
 /// The mends in the order in which they are applied one after the other.
-inline constexpr int kMendCount = 5;
+inline constexpr int kMendCount = 6;
 Mends first_mends(int count);
 
 class LetterModel {
@@ -44,6 +45,7 @@ class LetterModel {
 
   void visit_pixel(Query& query, int u, int v) const;
   void take_cells(Query& query, int u, int v, int first, int last, double d_o) const;
+  void take_blind_cells(Query& query, int u, int v) const;
   void take_first_by_index(Query& query, int u, int v, int first, int last, int point_cell) const;
   [[nodiscard]] bool confirmed(const Query& query, const PixelFrustum& cell, int u, int v, int n) const;
   [[nodiscard]] double cell_distance_m(const Query& query, int u, int v, double d1_m, double d2_m) const;
