@@ -21,7 +21,7 @@ Pose pose_from_matrix(const Eigen::Matrix4d& matrix, const char* name) {
   }
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double deviation = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (deviation > kRotationTolerance) {
+  if (!(deviation <= kRotationTolerance)) {
     fail(name, ": rotation deviates from orthonormal by ", deviation, ", must be at most ", kRotationTolerance);
   }
   if (rotation.determinant() < 0) {
