@@ -89,6 +89,8 @@ class Workers {
   }
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
+  Workers(Workers&&) = delete;
+  Workers& operator=(Workers&&) = delete;
   ~Workers() {
     pieces_.stop();
     for (std::thread& thread : threads_) {
