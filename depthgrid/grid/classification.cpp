@@ -1,9 +1,39 @@
 #include "depthgrid/grid/classification.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace depthgrid::grid {
+
+namespace {
+
+/// What the pixels around (u, v) say of a sample at depth z.
+struct Look {
+  bool measured = false;
+  bool occluded = false;
+  bool unmeasured = false;
+};
+
+Look look(const DepthImage& measured_m, int u, int v, double z_m, const SensorMargin& margin, double slack_m) {
+  Look result;
+  const int reach_px = margin.lateral_px;
+  for (int j = std::max(0, v - reach_px); j <= std::min(measured_m.height_px() - 1, v + reach_px); ++j) {
+    for (int i = std::max(0, u - reach_px); i <= std::min(measured_m.width_px() - 1, u + reach_px); ++i) {
+      const double depth_m = measured_m.at(i, j);
+      if (!(depth_m > 0)) {
+        result.unmeasured = true;
+      } else if (std::abs(z_m - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {
+        result.measured = true;
+      } else if (z_m > depth_m) {
+        result.occluded = true;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
 
 Classification classify(std::span<const Eigen::Vector3d> samples_world, std::span<const ViewingCamera> cameras,
                         const SensorMargin& margin, double slack_m) noexcept {
@@ -22,20 +52,18 @@ Classification classify(std::span<const Eigen::Vector3d> samples_world, std::spa
       if (!(p.x_px >= 0 && p.y_px >= 0 && p.x_px < view.camera.width_px && p.y_px < view.camera.height_px)) {
         continue;
       }
-      const double depth_m = view.measured_m->at(static_cast<int>(p.x_px), static_cast<int>(p.y_px));
-      if (!(depth_m > 0) || p.depth_m < view.near_m) {
+      if (p.depth_m < view.near_m) {
         unmeasured = true;
         continue;
       }
-      const double reach_m = depth_margin_m(margin, depth_m) + slack_m;
-      if (std::abs(p.depth_m - depth_m) <= reach_m) {
-        if (x_camera.norm() < nearest_camera_m) {
-          nearest_camera_m = x_camera.norm();
-          result.camera = static_cast<std::uint16_t>(k);
-        }
-      } else if (p.depth_m > depth_m) {
-        occluded = true;
+      const Look seen =
+          look(*view.measured_m, static_cast<int>(p.x_px), static_cast<int>(p.y_px), p.depth_m, margin, slack_m);
+      if (seen.measured && x_camera.norm() < nearest_camera_m) {
+        nearest_camera_m = x_camera.norm();
+        result.camera = static_cast<std::uint16_t>(k);
       }
+      occluded = occluded || seen.occluded;
+      unmeasured = unmeasured || seen.unmeasured;
     }
   }
   if (result.camera) {

@@ -257,7 +257,7 @@ Evaluation GridEvaluator::State::answer(const ObstacleSet& obstacles) const noex
   const Eigen::Vector3d inside_camera =
       deproject(grid.principal(), {obstacles.u() + 0.5, obstacles.v() + 0.5, nearest_camera.z()});
   const std::array<Eigen::Vector3d, 2> samples{T_world_principal * inside_camera, nearest.nearest_world};
-  const SensorMargin margin = settings.variant == Variant::corrected ? settings.sensor : SensorMargin{};
+  const SensorMargin margin = settings.variant == Variant::corrected ? settings.sensor : SensorMargin{0, 0, 0, 0};
   const Classification classified = classify(samples, views, margin, cell_m);
   nearest.state = classified.state;
   nearest.camera = classified.camera;
