@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "depthgrid/app/demo_command.hpp"
 #include "depthgrid/app/distances_command.hpp"
 #include "depthgrid/app/info_command.hpp"
 #include "depthgrid/app/map_command.hpp"
@@ -40,6 +41,7 @@ int run(int argc, char** argv) {
       "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"
       "  depthgrid distances ../shared/data/kinect3_ball --point 0.4,0.2,1.1 --in floor --frames 0:80:8\n"
       "'depthgrid COMMAND --help' explains a command. Exit codes: 0 done, 1 error, 2 broken command line.");
+  depthgrid::app::add_demo_command(app);
   depthgrid::app::add_distances_command(app);
   depthgrid::app::add_info_command(app);
   depthgrid::app::add_map_command(app);
