@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <set>
 #include <utility>
@@ -9,11 +11,13 @@
 
 #include "depthgrid/app/answer_writer.hpp"
 #include "depthgrid/app/evaluation_options.hpp"
+#include "depthgrid/app/frame_picture.hpp"
 #include "depthgrid/app/frame_selection.hpp"
 #include "depthgrid/app/output_file.hpp"
 #include "depthgrid/app/progress_line.hpp"
 #include "depthgrid/app/usage_error.hpp"
 #include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/map_file.hpp"
 #include "depthgrid/input/control_points.hpp"
 #include "depthgrid/input/recording.hpp"
 
@@ -123,8 +127,35 @@ double deepest_reading_m(input::Recording& recording, std::size_t camera, const 
   return deepest_m;
 }
 
+std::filesystem::path picture_file(const std::string& folder, int frame_number) {
+  std::string number = std::to_string(frame_number);
+  number.insert(0, number.size() < 4 ? 4 - number.size() : 0, '0');
+  return std::filesystem::path(folder) / ("frame_" + number + ".png");
+}
+
+/// The stored map, or nothing: the closed form is used then.
+std::shared_ptr<const grid::DepthGridMap> load_map(const DistancesOptions& options, const Rig& rig,
+                                                   std::size_t principal, const grid::DepthQuantisation& cells) {
+  if (options.map_file.empty()) {
+    return nullptr;
+  }
+  std::vector<grid::SecondaryCamera> secondaries;
+  const Pose& T_world_principal = rig.cameras[principal].T_world_camera;
+  for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
+    if (k != principal) {
+      const auto& camera = rig.cameras[k];
+      secondaries.push_back({camera.intrinsics, camera.T_world_camera.inverse() * T_world_principal});
+    }
+  }
+  const grid::DepthGrid depth_grid(rig.cameras[principal].intrinsics, cells);
+  return std::make_shared<const grid::DepthGridMap>(grid::load_map(options.map_file, depth_grid, secondaries));
+}
+
 void run(const DistancesOptions& options) {
   const auto settings = evaluation_settings(options.evaluation);
+  if (!options.map_file.empty() && settings.variant == grid::Variant::corrected) {
+    fail_usage("--map has no effect with --variant corrected, which looks at whole cells; use --variant letter");
+  }
   const Points points = control_points(options);
 
   input::RecordingOptions recording_options;
@@ -144,17 +175,23 @@ void run(const DistancesOptions& options) {
     index -= first;
   }
 
+  grid::DepthQuantisation base;
   std::optional<double> reach_m;
-  if (!options.evaluation.count) {
+  if (!options.map_file.empty()) {
+    base = grid::read_map_info(options.map_file).calibration.quantisation;
+  } else if (!options.evaluation.count) {
     const auto& rule = rig.cameras[principal].rule;
     reach_m = std::isfinite(rule.far_m) ? rule.far_m : deepest_reading_m(recording, principal, rule, indices);
   }
-  const auto cells = depth_quantisation(options.evaluation, {}, reach_m);
-  grid::GridEvaluator evaluator(rig, principal, cells, settings);
+  const auto cells = depth_quantisation(options.evaluation, base, reach_m);
+  grid::GridEvaluator evaluator(rig, principal, cells, settings, load_map(options, rig, principal, cells));
 
   const auto format = options.format == "csv" ? AnswerFormat::csv : AnswerFormat::json_lines;
   const AnswerWriter writer(format, rig, T_output_world, settings.collect == grid::Collect::hybrid);
   OutputFile output(options.output);
+  if (!options.pictures.empty()) {
+    make_output_directory(options.pictures);
+  }
   output.write(writer.header());
 
   ProgressLine progress("frame", indices.size());
@@ -163,13 +200,22 @@ void run(const DistancesOptions& options) {
     const int number = recording.frame_number(index);
     const auto points_now = points.at(number);
     check_names(points_now, number);
-    if (!evaluator.update(recording.read(index))) {
+    const auto frames = recording.read(index);
+    if (!evaluator.update(frames)) {
       fail("frame ", number, ": a camera has no image");
     }
     const auto time_s =
         recording.rate_hz() ? std::optional<double>(index / *recording.rate_hz()) : std::optional<double>();
+    std::vector<PictureLine> picture;
     for (const auto& point : points_now) {
-      output.write(writer.line(number, time_s, point, evaluator.evaluate(T_world_output * point.p_m)));
+      const Eigen::Vector3d p_world = T_world_output * point.p_m;
+      const grid::Evaluation answer = evaluator.evaluate(p_world);
+      output.write(writer.line(number, time_s, point, answer));
+      picture.push_back({p_world, answer.nearest});
+    }
+    if (!options.pictures.empty()) {
+      save_frame_picture(picture_file(options.pictures, number), rig.name + ", frame " + std::to_string(number), rig,
+                         frames, picture, settings.rho_m);
     }
     progress.update(i + 1);
   }
@@ -192,11 +238,20 @@ void add_input_options(CLI::App& command, DistancesOptions& options) {
   command.add_option("--frames", options.frames, "frames: 5, 0:80 (both included), 0:80:8 or 1,4,9 (default: all)");
 }
 
+void add_map_option(CLI::App& command, DistancesOptions& options) {
+  command
+      .add_option("--map", options.map_file,
+                  "map file of 'depthgrid map build' for --variant letter; its depth cells are used")
+      ->group("Depth grid");
+}
+
 void add_output_options(CLI::App& command, DistancesOptions& options) {
   command.add_option("--format", options.format, "csv, or jsonl: one JSON object a line")
       ->check(CLI::IsMember({"csv", "jsonl"}))
       ->capture_default_str();
   command.add_option("--output", options.output, "file to write, - for standard output")->capture_default_str();
+  command.add_option("--pictures", options.pictures,
+                     "folder for a picture of every frame: depth, points and distances");
 }
 
 }  // namespace
@@ -207,6 +262,7 @@ void add_distances_command(CLI::App& app) {
   add_input_options(*command, *options);
   add_output_options(*command, *options);
   add_evaluation_options(*command, options->evaluation);
+  add_map_option(*command, *options);
   command->footer(
       "Examples:\n"
       "  depthgrid distances ../shared/data/kinect3_ball --point 0.4,0.2,1.1 --in floor --frames 0:80:8\n"
