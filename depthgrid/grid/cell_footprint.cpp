@@ -108,7 +108,7 @@ bool CellProjector::project(double front_m, double back_m, CellFootprint& footpr
   const int v_low = static_cast<int>(std::floor(std::max(y_low - slack_px, 0.0)));
   const int v_high = static_cast<int>(std::floor(std::min(y_high + slack_px, camera_.height_px - 1.0)));
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  extents_.assign(static_cast<std::size_t>(v_high - v_low + 1), {kInfinity, -kInfinity});
+  extents_.assign(static_cast<std::size_t>(v_high - v_low) + 1, {kInfinity, -kInfinity});
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t j = (i + 1) % 4;
     add_edge(front.x_px[i], front.y_px[i], front.x_px[j], front.y_px[j], v_low, v_high, slack_px);

@@ -96,9 +96,10 @@ MapCalibration calibration_from_numbers(std::span<const double> values, const st
   for (auto rest = values.subspan(kPrincipalNumbers); !rest.empty(); rest = rest.subspan(kSecondaryNumbers)) {
     SecondaryCamera secondary;
     secondary.camera = camera_from(rest, name);
+    auto entry = rest.begin() + 6;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) {
-        secondary.T_secondary_principal.matrix()(row, column) = rest[static_cast<std::size_t>(6 + 4 * row + column)];
+        secondary.T_secondary_principal.matrix()(row, column) = *entry++;
       }
     }
     calibration.secondaries.push_back(secondary);
