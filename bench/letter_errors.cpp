@@ -94,6 +94,8 @@ int main(int argc, char** argv) {
     LetterErrors errors;
     errors.command = "depthgrid_letter_errors --seed " + std::to_string(seed) + " --scenes " + std::to_string(scenes) +
                      " --large-scenes " + std::to_string(large_scenes) + " --trials " + std::to_string(trials) +
+                     (app.count("--secondary") > 0 ? " --secondary " + CLI::detail::join(secondaries, ",") : "") +
+                     (app.count("--cases") > 0 ? " --cases " + std::to_string(cases) : "") +
                      " --output docs/letter-errors.md";
     errors.date = today();
     for (const int width_px : {0, 640}) {
