@@ -50,6 +50,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& request) {  // --help and --version
     return app.exit(request);
   } catch (const CLI::ParseError& error) {
+    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+      return report("there is no command '" + std::string(argv[1]) + "' (depthgrid --help lists them)", kUsage);
+    }
     return report(std::string(error.what()) + " (depthgrid --help explains)", kUsage);
   } catch (const depthgrid::app::UsageError& error) {
     return report(error.what(), kUsage);

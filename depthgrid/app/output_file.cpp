@@ -44,13 +44,18 @@ void make_output_directory(const std::string& directory) {
   if (fs::is_directory(directory)) {
     return;
   }
-  const auto parent = fs::absolute(directory).lexically_normal().parent_path();
-  if (!fs::is_directory(parent)) {
-    fail("cannot create the folder ", directory, ": there is no folder ", parent.string(), "; create it first");
+  if (fs::exists(directory)) {
+    fail("cannot create the folder ", directory, ": a file of that name is in the way");
+  }
+  auto path = fs::path(directory).lexically_normal();
+  path = path.has_filename() ? path : path.parent_path();
+  if (path.has_parent_path() && !fs::is_directory(path.parent_path())) {
+    fail("cannot create the folder ", directory, ": there is no folder ", path.parent_path().string(),
+         "; create it first");
   }
   std::error_code error;
   if (!fs::create_directory(directory, error) || error) {
-    fail("cannot create the folder ", directory, ": ", error ? error.message() : "a file of that name is in the way");
+    fail("cannot create the folder ", directory, ": ", error.message());
   }
 }
 

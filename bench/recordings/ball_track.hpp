@@ -1,0 +1,21 @@
+// Where the ball of the recording kinect3_ball is in every frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+
+namespace depthgrid::bench {
+
+struct BallTrack {
+  double radius_m = 0;
+  std::map<int, Eigen::Vector3d> centre_world;  ///< by frame number
+};
+
+/// Reads ball.json. Throws Error that names the file.
+BallTrack load_ball_track(const std::filesystem::path& file);
+
+/// The folder of a recording: $DEPTHGRID_DATA/name, by default ../shared/data/name from the current folder.
+std::filesystem::path recording_folder(const std::string& name);
+
+}  // namespace depthgrid::bench
