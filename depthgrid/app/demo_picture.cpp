@@ -151,9 +151,9 @@ void draw_slice(Canvas& canvas, const Rectangle& area, const simulation::DemoSce
 
 void draw_key(Canvas& canvas, double y_px) {
   struct Entry {
-    const char* text;
+    const char* text = "";
     Colour colour;
-    bool point;
+    bool point = false;
   };
   constexpr std::array<Entry, 8> kEntries{{
       {"gray area", kGray, false},

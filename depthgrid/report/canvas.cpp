@@ -4,6 +4,7 @@
 #include <cairo.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -181,7 +182,7 @@ void Canvas::outline(const Rectangle& area, const Stroke& stroke) {
 }
 
 void Canvas::line(const CanvasPoint& from, const CanvasPoint& to, const Stroke& stroke) {
-  const CanvasPoint points[] = {from, to};
+  const std::array<CanvasPoint, 2> points{from, to};
   polyline(points, stroke);
 }
 

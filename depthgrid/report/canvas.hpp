@@ -52,8 +52,10 @@ class Canvas {
   /// Throws Error unless both sides are in [1, 16384].
   Canvas(int width_px, int height_px, const Colour& background = kWhite);
   ~Canvas();
-  Canvas(Canvas&&) noexcept;
-  Canvas& operator=(Canvas&&) noexcept;
+  Canvas(const Canvas& other) = delete;
+  Canvas& operator=(const Canvas& other) = delete;
+  Canvas(Canvas&& other) noexcept;
+  Canvas& operator=(Canvas&& other) noexcept;
 
   [[nodiscard]] int width_px() const noexcept;
   [[nodiscard]] int height_px() const noexcept;
