@@ -2,9 +2,9 @@
 //
 // Known deviations from a bound that never over-estimates, kept on purpose (f = 525 px, rho = 0.4 m, 1 cm cells):
 //  - the printed window is half of what the rho-sphere needs (surveillance_window.hpp);
-//  - (5)-(7) clamp in pixel coordinates: up to 7 mm too far, in case (ii) up to 58 mm, since the obstacle is the whole
+//  - (5)-(7) clamp in pixel coordinates: up to 7 mm too far, in case (ii) up to 71 mm, since the obstacle is the whole
 //    shadow behind d_o and not only its front;
-//  - case (iii) orders cells by |j|, that is by depth, not by distance: decimetres too far, off axis;
+//  - case (iii) orders cells by |j|, that is by depth, not by distance: off axis up to 0.19 m too far in an answer;
 //  - d_o < d_start lets a cell that holds the surface itself count as free, so thin things vanish;
 //  - case (iv) starts at the robot, not at the point, and ends at the first confirmed cell.
 #pragma once
