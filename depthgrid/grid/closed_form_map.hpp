@@ -4,6 +4,7 @@
 // B = K t; pixel = (q_x / q_z, q_y / q_z) and depth = q_z. A is affine in u and v, so a ray costs six multiply-adds.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -107,8 +108,8 @@ class ClosedFormMap {
 
  private:
   struct Camera {
-    float a[3][3];  ///< A = a[.][0] + u a[.][1] + v a[.][2] at the pixel's centre
-    float b[3];
+    std::array<std::array<float, 3>, 3> a;  ///< A = a[.][0] + u a[.][1] + v a[.][2] at the pixel's centre
+    std::array<float, 3> b;
     float half_spread_z;  ///< largest deviation of A_z inside the pixel
     float width_px, height_px;
     bool operator==(const Camera&) const = default;

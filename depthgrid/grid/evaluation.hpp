@@ -81,6 +81,8 @@ class GridEvaluator {
   ~GridEvaluator();
   GridEvaluator(GridEvaluator&&) noexcept;
   GridEvaluator& operator=(GridEvaluator&&) noexcept;
+  GridEvaluator(const GridEvaluator&) = delete;
+  GridEvaluator& operator=(const GridEvaluator&) = delete;
 
   /// Takes the newest frame of every camera, in the rig's order. A camera whose frame is missing (no data) or has
   /// another size than its calibration counts as "no measurement" everywhere; false when there was one.
