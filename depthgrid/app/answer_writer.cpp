@@ -3,6 +3,8 @@
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
+#include <utility>
+
 #include "depthgrid/app/number_text.hpp"
 
 namespace depthgrid::app {
@@ -77,8 +79,8 @@ struct AnswerWriter::Row {
   std::int64_t obstacle_points = 0;
 };
 
-AnswerWriter::AnswerWriter(AnswerFormat format, const Rig& rig, const Pose& T_output_world, bool hybrid)
-    : format_(format), rig_(rig), T_output_world_(T_output_world), hybrid_(hybrid) {}
+AnswerWriter::AnswerWriter(AnswerFormat format, const Rig& rig, Pose T_output_world, bool hybrid)
+    : format_(format), rig_(rig), T_output_world_(std::move(T_output_world)), hybrid_(hybrid) {}
 
 std::string AnswerWriter::header() const {
   if (format_ == AnswerFormat::json_lines) {

@@ -20,7 +20,7 @@ class AnswerWriter {
  public:
   /// `T_output_world` maps the world to the frame of the control points, in which everything is written. With `hybrid`
   /// the hybrid direction and its number of obstacle points follow. `rig` must outlive the writer.
-  AnswerWriter(AnswerFormat format, const Rig& rig, const Pose& T_output_world, bool hybrid);
+  AnswerWriter(AnswerFormat format, const Rig& rig, Pose T_output_world, bool hybrid);
 
   /// The first line: column names of CSV, nothing for JSON lines.
   [[nodiscard]] std::string header() const;

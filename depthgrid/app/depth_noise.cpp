@@ -25,12 +25,15 @@ double residual_m(double z, double before, double after) {
 
 /// The line c + q x, c >= 0 and q >= 0, on or above all points (x, y) with the least sum of heights.
 std::pair<double, double> line_above(const std::vector<std::pair<double, double>>& points) {
-  double best_c = 0, best_q = 0, best_sum = -1;
+  double best_c = 0;
+  double best_q = 0;
+  double best_sum = -1;
   const auto offer = [&](double q) {
     if (!(q >= 0)) {
       return;
     }
-    double c = 0, sum = 0;
+    double c = 0;
+    double sum = 0;
     for (const auto& [x, y] : points) {
       c = std::max(c, y - q * x);
     }

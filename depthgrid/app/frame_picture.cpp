@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "depthgrid/app/number_text.hpp"
 #include "depthgrid/report/canvas.hpp"
 #include "depthgrid/report/depth_picture.hpp"
 
@@ -71,11 +72,9 @@ void draw_distance_legend(report::Canvas& canvas, const report::Rectangle& area,
     canvas.fill({area.x_px + area.width_px * i / kSteps, area.y_px, area.width_px / kSteps + 0.5, area.height_px},
                 distance_colour((i + 0.5) / kSteps));
   }
-  std::array<char, 64> text{};
-  (void)std::snprintf(text.data(), text.size(), "%.2f m and more", rho_m);
   canvas.text({area.x_px, area.y_px + area.height_px + 13}, "distance 0", 12);
-  canvas.text({area.x_px + area.width_px, area.y_px + area.height_px + 13}, text.data(), 12, report::kBlack,
-              report::Align::right);
+  canvas.text({area.x_px + area.width_px, area.y_px + area.height_px + 13},
+              micro_text(rho_m).substr(0, 4) + " m and more", 12, report::kBlack, report::Align::right);
 }
 
 }  // namespace
@@ -102,10 +101,11 @@ void save_frame_picture(const std::filesystem::path& file, const std::string& ti
   canvas.text({kGap_px, 23}, title, 16);
   for (int k = 0; k < count; ++k) {
     const auto& camera = rig.cameras[static_cast<std::size_t>(k)];
+    const int row = k / kColumns;
     const double scale = std::min(static_cast<double>(kTileWidth_px) / camera.intrinsics.width_px,
                                   static_cast<double>(tile_height_px) / camera.intrinsics.height_px);
     const report::Rectangle tile{static_cast<double>(kGap_px + (k % kColumns) * (kTileWidth_px + kGap_px)),
-                                 static_cast<double>(kHead_px + (k / kColumns) * (tile_height_px + kCaption_px)),
+                                 static_cast<double>(kHead_px + row * (tile_height_px + kCaption_px)),
                                  scale * camera.intrinsics.width_px, scale * camera.intrinsics.height_px};
     report::draw_depth(canvas, tile, images[static_cast<std::size_t>(k)], range);
     draw_lines(canvas, camera, tile, lines, rho_m);

@@ -11,6 +11,9 @@ namespace depthgrid::app {
 
 namespace {
 
+// printf's formats lay out tables in one line each, and the compiler checks them.
+// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg, cert-dcl50-cpp)
+
 constexpr std::size_t kPairsInTable = 30;
 
 /// printf into a string; lines are short.
@@ -64,6 +67,7 @@ std::string pair_rows(const Rig& rig, const std::vector<const PairSurvey*>& pair
 std::string pair_summary(const std::vector<const PairSurvey*>& pairs) {
   const auto row = [&](const char* name, const std::function<double(const PairAgreement&)>& figure, const char* unit) {
     std::vector<double> values;
+    values.reserve(pairs.size());
     for (const auto* pair : pairs) {
       values.push_back(figure(pair->agreement));
     }
@@ -151,5 +155,7 @@ std::string to_text(const input::Recording& recording, const RecordingInfo& info
   }
   return text + suggestion(info, pairs);
 }
+
+// NOLINTEND(cppcoreguidelines-pro-type-vararg, cert-dcl50-cpp)
 
 }  // namespace depthgrid::app

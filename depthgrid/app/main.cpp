@@ -24,7 +24,8 @@ int report(std::string message, int exit_code) {
       c = ' ';
     }
   }
-  (void)std::fprintf(stderr, "depthgrid: %s\n", message.c_str());
+  message = "depthgrid: " + message + "\n";
+  (void)std::fputs(message.c_str(), stderr);
   return exit_code;
 }
 

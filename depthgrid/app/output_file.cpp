@@ -1,8 +1,8 @@
 #include "depthgrid/app/output_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
@@ -28,7 +28,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
 
 void OutputFile::write(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) {
-    fail("cannot write ", replacement_ ? path_ : "standard output", ": ", std::strerror(errno));
+    fail("cannot write ", replacement_ ? path_ : "standard output", ": ", std::generic_category().message(errno));
   }
 }
 
@@ -36,7 +36,7 @@ void OutputFile::commit() {
   if (replacement_) {
     replacement_->commit();
   } else if (std::fflush(stream_) != 0) {
-    fail("cannot write standard output: ", std::strerror(errno));
+    fail("cannot write standard output: ", std::generic_category().message(errno));
   }
 }
 
