@@ -5,7 +5,6 @@
 #include <limits>
 
 namespace depthgrid::grid {
-
 namespace {
 
 /// What the pixels around (u, v) say of a sample at depth z.
@@ -15,9 +14,12 @@ struct Look {
   bool unmeasured = false;
 };
 
-Look look(const DepthImage& measured_m, int u, int v, double z_m, const SensorMargin& margin, double slack_m) {
+Look look(const DepthImage& measured_m, int u, int v, double z_m, const SensorMargin& margin, double slack_m) noexcept {
   Look result;
   const int reach_px = margin.lateral_px;
+  // Beyond the image's edge nothing is measured, so the free depth of the pixels beside it is 0.
+  result.unmeasured =
+      u < reach_px || v < reach_px || u + reach_px >= measured_m.width_px() || v + reach_px >= measured_m.height_px();
   for (int j = std::max(0, v - reach_px); j <= std::min(measured_m.height_px() - 1, v + reach_px); ++j) {
     for (int i = std::max(0, u - reach_px); i <= std::min(measured_m.width_px() - 1, u + reach_px); ++i) {
       const double depth_m = measured_m.at(i, j);

@@ -30,7 +30,8 @@ struct Classification {
 /// free depth was taken from: on a slanted surface the nearest of them lies well in front of the pixel's own depth.
 /// measured if some camera has one of the samples within [D - m - slack, D + m + slack] of one of these pixels'
 /// measured depths D (the nearest such camera is named); else occluded if it is behind one of them for some camera;
-/// else unmeasured if a camera looks there without measurement; else unobserved. The samples are points of the nearest
+/// else unmeasured if a camera looks there without measurement, or so near the
+/// image's edge that the reach leaves the image; else unobserved. The samples are points of the nearest
 /// cell (world frame); slack_m is the cell's depth, within which the grid cannot tell surface from shadow.
 [[nodiscard]] Classification classify(std::span<const Eigen::Vector3d> samples_world,
                                       std::span<const ViewingCamera> cameras, const SensorMargin& margin,
