@@ -12,7 +12,7 @@ Observation::Observation(const RigCamera& camera, const SensorMargin* margins)
       is_robot_(static_cast<std::size_t>(camera.intrinsics.width_px) *
                 static_cast<std::size_t>(camera.intrinsics.height_px)),
       free_(with_free_depth_ ? camera.intrinsics.width_px : 1, with_free_depth_ ? camera.intrinsics.height_px : 1,
-            with_free_depth_ ? *margins : SensorMargin{}) {}
+            margins != nullptr ? *margins : SensorMargin{}) {}
 
 bool Observation::update(const Frame& frame) noexcept {
   present_ = frame.depth.data != nullptr && frame.depth.width_px == measured_m_.width_px() &&
