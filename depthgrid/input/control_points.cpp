@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/input/number_parsing.hpp"
 #include "depthgrid/input/text_file.hpp"
 
 namespace depthgrid::input {
@@ -31,22 +30,13 @@ struct Place {
   fail(place.name, ": ", line, "column ", value.column, ": ", rule);
 }
 
-bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
-
 /// Values of one line between the commas, without the spaces around them.
 std::vector<Value> split(std::string_view line) {
   std::vector<Value> values;
   for (std::size_t begin = 0;;) {
     const std::size_t comma = std::min(line.find(',', begin), line.size());
-    std::size_t first = begin;
-    std::size_t last = comma;
-    while (first < last && is_space(line[first])) {
-      ++first;
-    }
-    while (last > first && is_space(line[last - 1])) {
-      --last;
-    }
-    values.push_back({line.substr(first, last - first), first + 1});
+    const std::string_view text = trimmed(line.substr(begin, comma - begin));
+    values.push_back({text, static_cast<std::size_t>(text.data() - line.data()) + 1});
     if (comma == line.size()) {
       return values;
     }
@@ -73,25 +63,15 @@ bool is_header(const std::vector<Value>& values) {
   return true;
 }
 
-/// The whole of a value as a number; from_chars so that the locale's decimal comma plays no part.
-template <class Number>
-bool to_number(std::string_view text, Number& number) noexcept {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') {
-    text.remove_prefix(1);
-  }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
 double coordinate_m(const Place& place, const Value& value, char axis) {
-  double number = 0;
-  if (!to_number(value.text, number)) {
+  const auto number = parse_number<double>(value.text);
+  if (!number) {
     fail_at(place, value, std::string(1, axis) + " is '" + std::string(value.text) + "', must be a number in metres");
   }
-  if (!std::isfinite(number)) {
+  if (!std::isfinite(*number)) {
     fail_at(place, value, std::string(1, axis) + " is '" + std::string(value.text) + "', must be finite");
   }
-  return number;
+  return *number;
 }
 
 Eigen::Vector3d position_m(const Place& place, std::span<const Value> xyz) {
@@ -102,11 +82,11 @@ std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, 
   if (values.size() == kFixedColumns) {
     return points.fixed;
   }
-  int frame = 0;
-  if (!to_number(values[0].text, frame) || frame < 0) {
+  const auto frame = parse_number<int>(values[0].text);
+  if (!frame || *frame < 0) {
     fail_at(place, values[0], "frame is '" + std::string(values[0].text) + "', must be a whole number from 0");
   }
-  return points.of_frame[frame];
+  return points.of_frame[*frame];
 }
 
 void add_point(ControlPoints& points, const Place& place, const std::vector<Value>& values) {

@@ -43,6 +43,7 @@ struct Reader {
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
   auto* reader = static_cast<Reader*>(png_get_error_ptr(png));
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): bounded, and it ends the text
   static_cast<void>(std::snprintf(reader->message.data(), reader->message.size(), "%s", message));
   png_longjmp(png, 1);
 }
