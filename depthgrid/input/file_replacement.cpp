@@ -27,7 +27,8 @@ std::string temporary_suffix() {
 
 FileReplacement::FileReplacement(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
   temporary_ += temporary_suffix();
-  stream_ = std::fopen(temporary_.c_str(), "wb");  // NOLINT(cppcoreguidelines-prefer-member-initializer): needs the name
+  // NOLINTNEXTLINE(cppcoreguidelines-prefer-member-initializer): the name must be complete first
+  stream_ = std::fopen(temporary_.c_str(), "wb");
   if (stream_ == nullptr) {
     fail_to_write(file_, errno);
   }
