@@ -1,20 +1,34 @@
 #include "depthgrid/app/frame_selection.hpp"
 
 #include <algorithm>
+#include <string_view>
 
-#include "depthgrid/app/number_text.hpp"
 #include "depthgrid/app/usage_error.hpp"
+#include "depthgrid/input/number_parsing.hpp"
 
 namespace depthgrid::app {
 
 namespace {
 
 long frame_number(const std::string& text, const std::string& whole) {
-  const auto value = parse_whole_number(text);
+  const auto value = input::parse_number<long>(text);
   if (!value) {
     fail_usage("--frames ", whole, ": '", text, "' is not a frame number; write 5, 0:80, 0:80:8 or 1,4,9");
   }
   return *value;
+}
+
+/// The parts between the separators, without the blanks around them; an empty text has one empty part.
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.emplace_back(input::trimmed(text.substr(begin, end - begin)));
+    if (end == text.size()) {
+      return parts;
+    }
+    begin = end + 1;
+  }
 }
 
 }  // namespace
