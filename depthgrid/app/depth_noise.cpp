@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kReach_px = 4;
 constexpr double kSlice_m = 0.5;
-constexpr std::size_t kSliceCount = 40;  // to 20 m
+constexpr std::size_t kSliceCount = 40;
+constexpr double kFarthest_m = kSlice_m * kSliceCount;
 constexpr double kEdge = 0.03;
 constexpr std::int64_t kFewestResiduals = 1000;
 constexpr double kCoveredShare = 0.95;
@@ -65,10 +66,10 @@ void DepthNoise::add(const DepthImage& depth) {
   for (int v = kReach_px; v < depth.height_px() - kReach_px; ++v) {
     for (int u = kReach_px; u < depth.width_px() - kReach_px; ++u) {
       const double z = depth.at(u, v);
-      const auto slice = static_cast<std::size_t>(z / kSlice_m);
-      if (!(z > 0) || slice >= kSliceCount) {
+      if (!(z > 0 && z < kFarthest_m)) {  // before the cast: not every float fits into an integer
         continue;
       }
+      const auto slice = static_cast<std::size_t>(z / kSlice_m);
       for (const auto& [du, dv] : {std::pair(kReach_px, 0), std::pair(0, kReach_px)}) {
         const double r = residual_m(z, depth.at(u - du, v - dv), depth.at(u + du, v + dv));
         if (r >= 0) {

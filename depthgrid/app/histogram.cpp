@@ -13,13 +13,13 @@ constexpr std::size_t kBinCount = 4001;
 
 }  // namespace
 
-void Histogram::add(double value_m) {
+void Histogram::add(double value_m, std::int64_t times) {
   if (bins_.empty()) {
     bins_.resize(kBinCount);
   }
   const double bin = std::min(std::floor(value_m / kBinSize_m), static_cast<double>(kBinCount - 1));
-  ++bins_[static_cast<std::size_t>(std::max(bin, 0.0))];
-  ++count_;
+  bins_[static_cast<std::size_t>(std::max(bin, 0.0))] += times;
+  count_ += times;
 }
 
 double Histogram::quantile_m(double q) const noexcept {

@@ -9,13 +9,14 @@ namespace depthgrid::app {
 /// Bins of half a millimetre from 0 to 2 m; everything beyond shares one last bin.
 class Histogram {
  public:
-  void add(double value_m);
+  /// Adds `value_m` `times` times.
+  void add(double value_m, std::int64_t times = 1);
   [[nodiscard]] std::int64_t count() const noexcept { return count_; }
   /// The middle of the bin that holds the q-quantile, 0 <= q <= 1; NaN when empty, 2 m when in the last bin.
   [[nodiscard]] double quantile_m(double q) const noexcept;
 
  private:
-  std::vector<std::int32_t> bins_;
+  std::vector<std::int64_t> bins_;  // a long recording has more residuals than 32 bits count
   std::int64_t count_ = 0;
 };
 
