@@ -65,6 +65,7 @@ Recording::Recording(const std::filesystem::path& path, const RecordingOptions& 
     }
     camera.rule.near_m = options.near_m.value_or(camera.rule.near_m);
     camera.rule.far_m = options.far_m.value_or(camera.rule.far_m);
+    camera.rule.clamp_beyond_far = options.clamp_beyond_far.value_or(camera.rule.clamp_beyond_far);
     validate(camera.rule, (name + ": camera '" + camera.id + "'").c_str());
     const PinholeCamera& intrinsics = camera.intrinsics;
     if (distorts(camera.distortion)) {

@@ -20,6 +20,8 @@ struct RecordingOptions {
   std::vector<std::string> camera_ids;  ///< cameras in the order wanted; empty: all, in the file's order
   std::optional<double> near_m;         ///< in place of every camera's own nearest measurable depth
   std::optional<double> far_m;          ///< in place of every camera's own farthest measurable depth
+  /// In place of every camera's own treatment of readings beyond far_m. It is needed before distortion is removed.
+  std::optional<bool> clamp_beyond_far = std::nullopt;
 };
 
 /// Frames are counted from index 0; the number in the file's name is first_frame + index. Not thread-safe.

@@ -89,6 +89,22 @@ TEST(Recording, NearAndFarMayBeSetByTheCaller) {
   EXPECT_EQ(depth_m(recording, frames[1], 1, 1, 1), 0.0F);  // 1.0015 m is nearer than near_m
 }
 
+/// Beyond far_m is decided before the lens distortion is removed: afterwards it cannot be told from "no measurement".
+TEST(Recording, TheCallersTreatmentBeyondFarHoldsWithLensDistortion) {
+  for (const std::string lens : {"[0, 0, 0, 0, 0]", "[-0.3, 0, 0, 0, 0]"}) {
+    const TemporaryFolder folder;
+    write_recording(folder, small_rig_with("[0, 0, 0, 0, 0]", lens));
+    write_image(folder / "right/003.png", 9000);  // 4.5 m, the camera reaches to 4 m and its rule is to clamp
+    for (const auto& [given, expected_m] :
+         {std::pair(std::optional<bool>(), 4.0F), std::pair(std::optional(true), 4.0F),
+          std::pair(std::optional(false), 0.0F)}) {
+      Recording recording(folder.path(),
+                          {.camera_ids = {"right"}, .near_m = {}, .far_m = {}, .clamp_beyond_far = given});
+      EXPECT_EQ(depth_m(recording, recording.read(0)[0], 0, 4, 3), expected_m) << lens;
+    }
+  }
+}
+
 TEST(Recording, IndexStandsInForTimeWhereTheRateIsUnknown) {
   const TemporaryFolder folder;
   write_recording(folder, small_rig_with(", \"rate_hz\": 4", ""));
