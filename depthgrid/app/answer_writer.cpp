@@ -74,6 +74,7 @@ struct AnswerWriter::Row {
   Texts direction;
   bool stale = false;
   bool budget = false;
+  std::string known_to_m;
   bool hybrid = false;
   Texts hybrid_direction;
   std::int64_t obstacle_points = 0;
@@ -88,7 +89,7 @@ std::string AnswerWriter::header() const {
   }
   return std::string(
              "frame,time_s,point,x_m,y_m,z_m,distance_m,state,camera,nearest_x_m,nearest_y_m,nearest_z_m,"
-             "direction_x,direction_y,direction_z,stale,budget") +
+             "direction_x,direction_y,direction_z,stale,budget,known_to_m") +
          (hybrid_ ? ",hybrid_x,hybrid_y,hybrid_z,obstacle_points\n" : "\n");
 }
 
@@ -107,6 +108,7 @@ std::string AnswerWriter::line(int frame, std::optional<double> time_s, const in
   row.direction = Texts::of(T_output_world_.linear() * nearest.direction_world, micro_text);
   row.stale = nearest.stale;
   row.budget = nearest.budget;
+  row.known_to_m = micro_text_down(nearest.known_to_m);
   row.hybrid = hybrid_;
   row.hybrid_direction = Texts::of(T_output_world_.linear() * answer.hybrid_direction_world, micro_text);
   row.obstacle_points = answer.obstacle_points;
@@ -117,7 +119,8 @@ std::string AnswerWriter::csv(const Row& row) {
   const auto yes = [](bool value) { return value ? "true" : "false"; };
   std::string text = std::to_string(row.frame) + ',' + row.time_s + ',' + cell(row.point) + ',' + row.position.csv() +
                      ',' + row.distance_m + ',' + std::string(row.state) + ',' + cell(row.camera) + ',' +
-                     row.nearest.csv() + ',' + row.direction.csv() + ',' + yes(row.stale) + ',' + yes(row.budget);
+                     row.nearest.csv() + ',' + row.direction.csv() + ',' + yes(row.stale) + ',' + yes(row.budget) +
+                     ',' + row.known_to_m;
   if (row.hybrid) {
     text += ',' + row.hybrid_direction.csv() + ',' + std::to_string(row.obstacle_points);
   }
@@ -154,6 +157,8 @@ std::string AnswerWriter::json(const Row& row) {
   writer.Bool(row.stale);
   writer.Key("budget");
   writer.Bool(row.budget);
+  writer.Key("known_to_m");
+  write_number(writer, row.known_to_m);
   if (row.hybrid) {
     writer.Key("hybrid_direction");
     row.hybrid_direction.json(writer);

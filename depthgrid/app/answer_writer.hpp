@@ -15,7 +15,7 @@ namespace depthgrid::app {
 enum class AnswerFormat : std::uint8_t { csv, json_lines };
 
 /// Turns answers into lines of text. A distance that is not known is an empty cell or null, never a number. Distances
-/// are rounded down to a micrometre. Immutable after construction.
+/// (known_to_m too) are rounded down to a micrometre. Immutable after construction.
 class AnswerWriter {
  public:
   /// `T_output_world` maps the world to the frame of the control points, in which everything is written. With `hybrid`

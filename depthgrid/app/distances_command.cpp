@@ -33,6 +33,7 @@ struct DistancesOptions {
   std::string points_file;
   std::string frame_of_points = "world";
   std::string frames;
+  bool static_scene = false;
   std::string map_file;
   std::string format = "csv";
   std::string output = "-";
@@ -124,6 +125,11 @@ double deepest_reading_m(input::Recording& recording, std::size_t camera, const 
     deepest_m = std::max(deepest_m, static_cast<double>(*std::max_element<const float*>(depth.data(), end)));
     progress.update(i + 1);
   }
+  if (!(deepest_m > 0)) {
+    fail("camera '", recording.rig().cameras[camera].id,
+         "' spans the depth grid and measures nothing in the chosen frames, so the grid has no far end; give --far or "
+         "--count, or another --principal");
+  }
   return deepest_m;
 }
 
@@ -151,6 +157,22 @@ std::shared_ptr<const grid::DepthGridMap> load_map(const DistancesOptions& optio
   return std::make_shared<const grid::DepthGridMap>(grid::load_map(options.map_file, depth_grid, secondaries));
 }
 
+/// What the rig file says and what the user says must fit together.
+void check(const input::Recording& recording, const DistancesOptions& options,
+           const grid::EvaluationSettings& settings) {
+  const auto& cameras = recording.rig().cameras;
+  if (std::any_of(cameras.begin(), cameras.end(),
+                  [](const auto& c) { return c.rule.clamp_beyond_far && !std::isfinite(c.rule.far_m); })) {
+    fail_usage("--beyond-far clamp needs a farthest measurable depth: give --far");
+  }
+  // Space that one camera saw free may be occupied when another one looks.
+  if (!recording.simultaneous() && cameras.size() > 1 && !options.static_scene && !(settings.pose.time_m > 0)) {
+    fail_usage(
+        "the rig file says \"simultaneous\": false, so images of one number are of different times; give "
+        "--static-scene if nothing moves, or --margin-time with how far an obstacle moves between them");
+  }
+}
+
 void run(const DistancesOptions& options) {
   const auto settings = evaluation_settings(options.evaluation);
   if (!options.map_file.empty() && settings.variant == grid::Variant::corrected) {
@@ -162,9 +184,10 @@ void run(const DistancesOptions& options) {
   recording_options.camera_ids = options.cameras;
   recording_options.near_m = near_limit_m(options.evaluation);
   recording_options.far_m = far_limit_m(options.evaluation);
+  recording_options.clamp_beyond_far = clamp_beyond_far(options.evaluation);
   input::Recording recording(options.recording, recording_options);
-  Rig rig = recording.rig();
-  apply_measurement_rule(options.evaluation, rig);
+  const Rig& rig = recording.rig();
+  check(recording, options, settings);
 
   const std::size_t principal = options.principal.empty() ? 0 : camera_index(rig, options.principal);
   const Pose T_output_world = output_frame(options.frame_of_points, rig);
@@ -236,6 +259,8 @@ void add_input_options(CLI::App& command, DistancesOptions& options) {
       ->check(CLI::IsMember({"world", "floor"}))
       ->capture_default_str();
   command.add_option("--frames", options.frames, "frames: 5, 0:80 (both included), 0:80:8 or 1,4,9 (default: all)");
+  command.add_flag("--static-scene", options.static_scene,
+                   "the scene does not move: frames of different times may be combined");
 }
 
 void add_map_option(CLI::App& command, DistancesOptions& options) {

@@ -1,7 +1,6 @@
 #include "depthgrid/app/evaluation_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 
 #include "depthgrid/app/sensor_preset.hpp"
 #include "depthgrid/app/usage_error.hpp"
@@ -117,19 +116,12 @@ std::optional<double> far_limit_m(const EvaluationOptions& options) {
   return options.far_m ? options.far_m : sensor_preset(options.sensor).far_m;
 }
 
-void apply_measurement_rule(const EvaluationOptions& options, Rig& rig) {
-  // A preset's far end is a declared property of the sensor; the user's own is not unless it is said.
-  const bool preset_far = !options.far_m && sensor_preset(options.sensor).far_m;
-  for (auto& camera : rig.cameras) {
-    camera.rule.near_m = near_limit_m(options).value_or(camera.rule.near_m);
-    camera.rule.far_m = far_limit_m(options).value_or(camera.rule.far_m);
-    camera.rule.clamp_beyond_far =
-        options.beyond_far ? *options.beyond_far == "clamp" : camera.rule.clamp_beyond_far || preset_far;
-    if (camera.rule.clamp_beyond_far && !std::isfinite(camera.rule.far_m)) {
-      fail_usage("--beyond-far clamp needs a farthest measurable depth: give --far");
-    }
-    validate(camera.rule, camera.id.c_str());
+std::optional<bool> clamp_beyond_far(const EvaluationOptions& options) {
+  if (options.beyond_far) {
+    return *options.beyond_far == "clamp";
   }
+  // A preset's far end is a declared property of the sensor; the user's own is not unless it is said.
+  return !options.far_m && sensor_preset(options.sensor).far_m ? std::optional<bool>(true) : std::nullopt;
 }
 
 grid::DepthQuantisation depth_quantisation(const EvaluationOptions& options, const grid::DepthQuantisation& base,
@@ -142,9 +134,12 @@ grid::DepthQuantisation depth_quantisation(const EvaluationOptions& options, con
   grid::validate(cells);
   if (!options.count && reach_m) {
     cells.count = 1;
-    for (double end_m = cells.d_min_m + cells.step_m; end_m < *reach_m && cells.count < kLargestCellCount;) {
+    for (double end_m = cells.d_min_m + cells.step_m; end_m < *reach_m; ++cells.count) {
+      if (cells.count == kLargestCellCount) {
+        fail("depth cells: ", kLargestCellCount, " cells of ", cells.step_m, " m (growth ", cells.growth, ") reach to ",
+             end_m, " m, must reach the far end ", *reach_m, " m; give a larger --step or --growth, or --count");
+      }
       end_m += cells.step_m + cells.growth * (end_m - cells.d_min_m);
-      ++cells.count;
     }
     grid::validate(cells);
   }

@@ -47,10 +47,12 @@ grid::EvaluationSettings evaluation_settings(const EvaluationOptions& options);
 std::optional<double> near_limit_m(const EvaluationOptions& options);
 std::optional<double> far_limit_m(const EvaluationOptions& options);
 
-/// Puts the limits and the treatment of readings beyond them into every camera's rule. Throws Error.
-void apply_measurement_rule(const EvaluationOptions& options, Rig& rig);
+/// Whether readings beyond the far limit count as that limit: as the user says, else yes where the limit is the sensor
+/// preset's, else nothing (the rig file's own).
+std::optional<bool> clamp_beyond_far(const EvaluationOptions& options);
 
-/// The depth cells: the user's values over `base`; without --count as many cells as reach `reach_m`.
+/// The depth cells: the user's values over `base`; without --count as many cells as reach `reach_m`. Throws Error where
+/// that is more cells than a grid can have.
 grid::DepthQuantisation depth_quantisation(const EvaluationOptions& options, const grid::DepthQuantisation& base,
                                            std::optional<double> reach_m);
 

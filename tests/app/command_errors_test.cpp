@@ -92,6 +92,18 @@ INSTANTIATE_TEST_SUITE_P(
              kGood + kPoint + "--beyond-far clamp",
              2,
              "--beyond-far clamp needs a farthest measurable depth: give --far"},
+        Case{"StepTooSmallForTheFarEnd",
+             {},
+             kGood + kPoint + "--step 1e-5 --far 2",
+             1,
+             "depth cells: 65535 cells of 1e-05 m (growth 0) reach to 0.94355 m, must reach the far end 2 m; give a "
+             "larger --step or --growth, or --count"},
+        Case{"StepTooSmallForTheDeepestReading",
+             {},
+             kGood + kPoint + "--step 1e-5",
+             1,
+             "depth cells: 65535 cells of 1e-05 m (growth 0) reach to 0.94355 m, must reach the far end 2 m; give a "
+             "larger --step or --growth, or --count"},
         Case{"NegativeMargin",
              {},
              kGood + kPoint + "--margin-constant -0.01",
@@ -173,6 +185,14 @@ void remove_first_pose(const TemporaryFolder& folder) {
   (void)folder.write("rig.json", text.erase(begin, end - begin));
 }
 
+/// A camera that measures nothing in any frame.
+void write_blind(const TemporaryFolder& folder, const std::string& camera) {
+  for (int frame = 5; frame < 7; ++frame) {
+    input::write_png_gray16(folder / input::depth_file_name(camera + "_%03d.png", frame), 64, 48,
+                            std::vector<std::uint16_t>(std::size_t{64} * 48));
+  }
+}
+
 void truncate(const TemporaryFolder& folder, const std::string& name) {
   const std::string bytes = read_bytes(folder / name);
   (void)folder.write(name, bytes.substr(0, bytes.size() / 2));
@@ -216,6 +236,19 @@ INSTANTIATE_TEST_SUITE_P(
              kGood + kPoint + "--near 3 --far 2",
              1,
              "./rig.json: camera 'left': far is 2 m, must be greater than near (3 m)"},
+        Case{"NotSimultaneous",
+             [](const TemporaryFolder& f) {
+               auto file = wall_rig();
+               file.simultaneous = false;
+               input::save_rig(file, f / "rig.json");
+             },
+             kGood + kPoint, 2,
+             "the rig file says \"simultaneous\": false, so images of one number are of different times; give "
+             "--static-scene if nothing moves, or --margin-time with how far an obstacle moves between them"},
+        Case{
+            "PrincipalMeasuresNothing", [](const TemporaryFolder& f) { write_blind(f, "left"); }, kGood + kPoint, 1,
+            "camera 'left' spans the depth grid and measures nothing in the chosen frames, so the grid has no far end; "
+            "give --far or --count, or another --principal"},
         Case{"UnreadableMap", [](const TemporaryFolder& f) { (void)f.write("wall.map", "no map"); },
              kGood + kPoint + "--variant letter --map wall.map", 1,
              "map file 'wall.map': has 6 bytes, a map file has at least 64; is it cut off?"},
@@ -256,6 +289,16 @@ TEST(OutputFile, StaysAsItWasWhenTheCommandFails) {
   EXPECT_EQ(run_command(kGood + kPoint, folder).exit_code, 1);
   EXPECT_EQ(read_bytes(folder / "answers.csv"), "old");
   EXPECT_EQ(folder.entries(), before);
+}
+
+TEST(BlindPrincipal, IsFineWhereTheUserSaysHowFarTheGridReaches) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  write_blind(folder, "left");
+  for (const std::string enough : {"--count 200", "--far 3", "--principal right"}) {
+    const auto result = run_command("distances . " + kPoint + enough, folder);
+    EXPECT_EQ(result.exit_code, 0) << enough << ": " << result.err;
+  }
 }
 
 TEST(StandardOutput, AFullOneIsAnError) {

@@ -63,9 +63,9 @@ TEST(Distances, OfAWallAsCsv) {
   ASSERT_EQ(lines.size(), 7U) << result.out;
   EXPECT_EQ(lines[0],
             "frame,time_s,point,x_m,y_m,z_m,distance_m,state,camera,nearest_x_m,nearest_y_m,nearest_z_m,"
-            "direction_x,direction_y,direction_z,stale,budget");
+            "direction_x,direction_y,direction_z,stale,budget,known_to_m");
   const auto near = cells_of(lines[1]);
-  ASSERT_EQ(near.size(), 17U);
+  ASSERT_EQ(near.size(), 18U);
   EXPECT_EQ(near[0], "5");
   EXPECT_EQ(near[1], "0.000000");
   EXPECT_EQ(near[2], "p1");
@@ -74,6 +74,7 @@ TEST(Distances, OfAWallAsCsv) {
   EXPECT_GE(std::stod(near[6]), 0.28);  // two cells
   EXPECT_EQ(near[7], "measured");
   EXPECT_NEAR(std::stod(near[14]), 1.0, 1e-3);
+  EXPECT_NEAR(std::stod(near[17]), 0.3, 0.02);  // the grid ends at the wall
   const auto far = cells_of(lines[2]);
   EXPECT_EQ(far[2], "far");
   EXPECT_EQ(far[6], "0.400000");
@@ -84,6 +85,7 @@ TEST(Distances, OfAWallAsCsv) {
   const auto beside = cells_of(lines[3]);
   EXPECT_EQ(beside[6], "");  // not known: no number at all
   EXPECT_EQ(beside[7], "outside");
+  EXPECT_EQ(beside[17], "");
   EXPECT_EQ(cells_of(lines[4])[0], "6");
   EXPECT_EQ(cells_of(lines[4])[1], "0.100000");
 }
@@ -113,6 +115,50 @@ TEST(Distances, AsJsonLinesInTheFloorFrame) {
   EXPECT_TRUE(b["distance_m"].IsNull());
   EXPECT_TRUE(b["nearest_m"].IsNull());
   EXPECT_TRUE(b["camera"].IsNull());
+  EXPECT_NEAR(a["known_to_m"].GetDouble(), 0.3, 0.02);
+  EXPECT_TRUE(b["known_to_m"].IsNull());
+}
+
+TEST(Distances, KnownToIsEmptyWhereOutsideCountsAsObstacle) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto result = run_command("distances . --point 0.2,0,1.7 --frames 5 --outside obstacle", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(cells_of(lines_of(result.out).at(1)).at(17), "");
+}
+
+/// The wall at 2 m is beyond far; with clamp it frees up to there, with and without a lens to straighten.
+TEST(Distances, ClampBeyondFarHoldsWithLensDistortion) {
+  for (const double k1 : {0.0, -0.05}) {
+    const TemporaryFolder folder;
+    write_wall(folder);
+    auto file = wall_rig();
+    for (auto& camera : file.rig.cameras) {
+      camera.distortion = make_distortion(Distortion::Model::plumb_bob, std::vector<double>{k1, 0, 0, 0, 0});
+    }
+    input::save_rig(file, folder / "rig.json");
+    const std::string question = "distances . --point 0.2,0,1.7 --frames 5 --far 1.9";
+    const auto clamped = run_command(question + " --beyond-far clamp", folder);
+    const auto invalid = run_command(question + " --beyond-far invalid", folder);
+    ASSERT_EQ(clamped.exit_code, 0) << clamped.err;
+    ASSERT_EQ(invalid.exit_code, 0) << invalid.err;
+    EXPECT_NEAR(std::stod(cells_of(lines_of(clamped.out).at(1))[6]), 0.19, 0.0151) << k1;
+    EXPECT_EQ(cells_of(lines_of(invalid.out).at(1))[6], "0.000000") << k1;
+  }
+}
+
+TEST(Distances, CombineDifferentTimesWhenTheUserSaysSo) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const std::string question = "distances . --point 0.2,0,1.7 --frames 5";
+  const auto simultaneous = run_command(question, folder);
+  auto file = wall_rig();
+  file.simultaneous = false;
+  input::save_rig(file, folder / "rig.json");
+  EXPECT_EQ(run_command(question, folder).exit_code, 2);
+  EXPECT_EQ(run_command(question + " --static-scene", folder).out, simultaneous.out);
+  EXPECT_EQ(run_command(question + " --margin-time 0.01", folder).exit_code, 0);
+  EXPECT_EQ(run_command(question + " --cameras left", folder).exit_code, 0);
 }
 
 TEST(Distances, PointsOfAFileMayMove) {
