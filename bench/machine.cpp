@@ -36,6 +36,24 @@ std::string instruction_sets() {
 #endif
 }
 
+std::string built_for() {
+#if defined(__AVX512F__)
+  return "AVX-512";
+#elif defined(__AVX2__)
+  return "AVX2";
+#else
+  return "the baseline";
+#endif
+}
+
+std::string compiler() {
+#if defined(__clang__)
+  return std::string("clang ") + __clang_version__;
+#else
+  return std::string("g++ ") + __VERSION__;
+#endif
+}
+
 }  // namespace
 
 std::string machine_line() {
@@ -45,7 +63,7 @@ std::string machine_line() {
   std::array<char, 16> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
   return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores (" + instruction_sets() +
-         "), one used; built for baseline by " + "g++ " + __VERSION__ + "; " + text.data();
+         "), one used; built for " + built_for() + " by " + compiler() + "; " + text.data();
 }
 
 }  // namespace depthgrid::bench

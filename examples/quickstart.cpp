@@ -49,9 +49,10 @@ int run() {
   camera.rule.near_m = 0.4;  // nothing nearer is believed
   camera.rule.far_m = 6.0;
 
-  // 2. The evaluator: every buffer is allocated here. Depth cells of 1 cm from 0.4 m to 4.4 m.
+  // 2. The evaluator: every buffer is allocated here. Depth cells of 1 cm from 0.3 m to 4.3 m: they
+  //    begin before near_m, so that the blind zone counts as unseen space and is not left out.
   depthgrid::grid::DepthQuantisation quantisation;
-  quantisation.d_min_m = 0.4;
+  quantisation.d_min_m = 0.3;
   quantisation.step_m = 0.01;
   quantisation.count = 400;
   depthgrid::grid::EvaluationSettings settings;

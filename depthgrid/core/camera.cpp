@@ -14,10 +14,16 @@ void validate(const PinholeCamera& camera, const char* name) {
     if (!(std::isfinite(value) && value > 0)) {
       fail(name, ": ", what, " is ", value, " px, must be a positive finite number");
     }
+    if (value > kLargestIntrinsic) {
+      fail(name, ": ", what, " is ", value, " px, must be at most ", kLargestIntrinsic);
+    }
   };
   const auto finite = [name](const char* what, double value) {
     if (!std::isfinite(value)) {
       fail(name, ": ", what, " is ", value, " px, must be finite");
+    }
+    if (std::abs(value) > kLargestIntrinsic) {
+      fail(name, ": ", what, " is ", value, " px, must be at most ", kLargestIntrinsic, " to either side");
     }
   };
   side("width", camera.width_px);

@@ -33,8 +33,11 @@ struct PinholeCamera {
 /// Largest accepted image side in pixels.
 inline constexpr int kLargestImageSide = 16384;
 
-/// Throws Error unless the size is in [1, kLargestImageSide], focal lengths are positive and all numbers are finite.
-/// `name` is used in messages only.
+/// Largest accepted focal length and distance of the principal point from the image's corner, in pixels.
+inline constexpr double kLargestIntrinsic = 1e6;
+
+/// Throws Error unless the size is in [1, kLargestImageSide], focal lengths are positive and all numbers are finite and
+/// at most kLargestIntrinsic. `name` is used in messages only.
 void validate(const PinholeCamera& camera, const char* name = "camera");
 
 /// Intrinsics from OpenCV's or ROS's convention (centre of pixel 0 at 0). Throws as validate().

@@ -23,7 +23,7 @@ struct DepthView {
   DepthFormat format = DepthFormat::uint16_units;
   int width_px = 0;
   int height_px = 0;
-  std::ptrdiff_t stride_bytes = 0;  ///< distance between rows
+  std::ptrdiff_t stride_bytes = 0;  ///< distance between rows; depth_view() fills it in
   double metres_per_unit = 0.001;   ///< used by uint16_units only
 };
 

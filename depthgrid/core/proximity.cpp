@@ -31,7 +31,8 @@ double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max
   if (!has_distance(answer) || !(elapsed_s >= 0) || !(v_max_m_s >= 0)) {
     return Proximity::kNaN;
   }
-  return std::max(0.0, answer.distance_m - v_max_m_s * elapsed_s);
+  // fmin ignores known_to_m where it is NaN, that is where it does not apply.
+  return std::max(0.0, std::fmin(answer.distance_m, answer.known_to_m) - v_max_m_s * elapsed_s);
 }
 
 }  // namespace depthgrid

@@ -11,9 +11,9 @@ namespace depthgrid {
 
 /// What stands at the nearest point. Never encoded in the distance.
 enum class ProximityState : std::uint8_t {
-  not_evaluated,  ///< nobody asked yet: distance is NaN
+  not_evaluated,  ///< nobody asked yet, or the point is not finite: distance is NaN
   measured,       ///< a camera measured a surface there
-  occluded,       ///< behind a measured surface for every camera that looks there (the gray area)
+  occluded,       ///< behind a measured surface for a camera that looks there, seen free by none (the gray area)
   unmeasured,     ///< some camera looks there but has no measurement (invalid pixel, blind zone)
   unobserved,     ///< no camera looks there
   outside,        ///< the space outside the space of interest: its border is nearest where that space counts as
@@ -41,15 +41,17 @@ struct Proximity {
   /// Distance from the point to the border of the space of interest where the space outside is ignored: obstacles
   /// farther away than this may be missing from the answer. NaN where it does not apply.
   double known_to_m = kNaN;
-  bool stale = false;   ///< a frame behind this answer is older than allowed
-  bool budget = false;  ///< the evaluation stopped early: distance_m is a valid lower bound, not the distance
+  bool stale = false;   ///< a frame behind this answer is older than the newest by more than allowed, or has no time
+  bool budget = false;  ///< the evaluation stopped early: distance_m is a valid lower bound, not the
+                        ///< distance. The grid evaluators always finish, so they never set it
 };
 
 /// True when distance_m is a number.
 [[nodiscard]] bool has_distance(const Proximity& answer) noexcept;
 
 /// The bound on the distance `elapsed_s` seconds after the exposure when obstacles move at most at `v_max_m_s`:
-/// max(0, D - v_max t). NaN where the answer has no distance or elapsed_s is negative or NaN.
+/// max(0, min(D, known_to) - v_max t), since something may stand at the border of the space of interest. NaN where the
+/// answer has no distance or elapsed_s is negative or NaN.
 [[nodiscard]] double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max_m_s) noexcept;
 
 }  // namespace depthgrid

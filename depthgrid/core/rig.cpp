@@ -6,10 +6,25 @@
 #include "depthgrid/core/error.hpp"
 
 namespace depthgrid {
+namespace {
+
+void check_pose(const Pose& pose, const std::string& name) {
+  pose_from_matrix(pose.matrix(), name.c_str());
+  const double largest = pose.translation().cwiseAbs().maxCoeff();
+  if (!(largest <= kLargestTranslation)) {
+    fail(name, ": translation reaches ", largest, " m, must be at most ", kLargestTranslation,
+         "; move the world's origin near the cameras");
+  }
+}
+
+}  // namespace
 
 void validate(const Rig& rig) {
   if (rig.cameras.empty()) {
     fail("rig '", rig.name, "': has no camera, needs at least one");
+  }
+  if (rig.T_floor_world) {
+    check_pose(*rig.T_floor_world, "rig '" + rig.name + "': T_floor_world");
   }
   std::set<std::string> ids;
   for (const RigCamera& camera : rig.cameras) {
@@ -25,7 +40,7 @@ void validate(const Rig& rig) {
     if (!(std::isfinite(camera.metres_per_unit) && camera.metres_per_unit > 0)) {
       fail(name, ": metres_per_unit is ", camera.metres_per_unit, ", must be a positive finite number");
     }
-    pose_from_matrix(camera.T_world_camera.matrix(), (name + ": T_world_camera").c_str());
+    check_pose(camera.T_world_camera, name + ": T_world_camera");
   }
 }
 

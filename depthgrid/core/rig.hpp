@@ -29,7 +29,12 @@ struct Rig {
   std::optional<Pose> T_floor_world;
 };
 
-/// Throws Error unless there is at least one camera, ids are non-empty and distinct and every camera is valid.
+/// Largest accepted coordinate of a camera, metres: beyond it double rounding outgrows the guards of the evaluators.
+/// Move the world's origin near the cameras instead.
+inline constexpr double kLargestTranslation = 1e5;
+
+/// Throws Error unless there is at least one camera, ids are non-empty and distinct, every camera is valid, and poses
+/// are rotations (to kRotationTolerance) with translations of at most kLargestTranslation.
 void validate(const Rig& rig);
 
 /// Index of the camera called `id`. Throws Error that lists the ids there are.

@@ -14,8 +14,9 @@ struct Look {
   bool unmeasured = false;
 };
 
-Look look(const DepthImage& measured_m, int u, int v, double z_m, const SensorMargin& margin, double slack_m) noexcept {
+Look look(const ViewingCamera& view, int u, int v, double z_m, const SensorMargin& margin, double slack_m) noexcept {
   Look result;
+  const DepthImage& measured_m = *view.measured_m;
   const int reach_px = margin.lateral_px;
   // Beyond the image's edge nothing is measured, so the free depth of the pixels beside it is 0.
   result.unmeasured =
@@ -25,6 +26,8 @@ Look look(const DepthImage& measured_m, int u, int v, double z_m, const SensorMa
       const double depth_m = measured_m.at(i, j);
       if (!(depth_m > 0)) {
         result.unmeasured = true;
+      } else if (view.is_robot != nullptr && view.is_robot[measured_m.index(i, j)] != 0) {
+        result.occluded = result.occluded || z_m > depth_m;
       } else if (std::abs(z_m - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {
         result.measured = true;
       } else if (z_m > depth_m) {
@@ -58,8 +61,7 @@ Classification classify(std::span<const Eigen::Vector3d> samples_world, std::spa
         unmeasured = true;
         continue;
       }
-      const Look seen =
-          look(*view.measured_m, static_cast<int>(p.x_px), static_cast<int>(p.y_px), p.depth_m, margin, slack_m);
+      const Look seen = look(view, static_cast<int>(p.x_px), static_cast<int>(p.y_px), p.depth_m, margin, slack_m);
       if (seen.measured && x_camera.norm() < nearest_camera_m) {
         nearest_camera_m = x_camera.norm();
         result.camera = static_cast<std::uint16_t>(k);

@@ -19,6 +19,7 @@ struct ViewingCamera {
   Pose T_camera_world;
   double near_m = 0;
   const DepthImage* measured_m = nullptr;
+  const std::uint8_t* is_robot = nullptr;  ///< a byte a pixel: 1 where the robot was removed; null: no robot
 };
 
 struct Classification {
@@ -31,7 +32,8 @@ struct Classification {
 /// measured if some camera has one of the samples within [D - m - slack, D + m + slack] of one of these pixels'
 /// measured depths D (the nearest such camera is named); else occluded if it is behind one of them for some camera;
 /// else unmeasured if a camera looks there without measurement, or so near the
-/// image's edge that the reach leaves the image; else unobserved. The samples are points of the nearest
+/// image's edge that the reach leaves the image; else unobserved. A removed robot's pixel measures
+/// nothing and occludes what is behind it. The samples are points of the nearest
 /// cell (world frame); slack_m is the cell's depth, within which the grid cannot tell surface from shadow.
 [[nodiscard]] Classification classify(std::span<const Eigen::Vector3d> samples_world,
                                       std::span<const ViewingCamera> cameras, const SensorMargin& margin,

@@ -6,6 +6,21 @@
 
 namespace depthgrid::grid {
 
+std::vector<SecondaryCamera> secondary_cameras(const Rig& rig, std::size_t principal) {
+  if (principal >= rig.cameras.size()) {
+    fail("rig '", rig.name, "': principal camera is ", principal, ", the rig has ", rig.cameras.size(), " cameras");
+  }
+  const Pose& T_world_principal = rig.cameras[principal].T_world_camera;
+  std::vector<SecondaryCamera> secondaries;
+  for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
+    if (k != principal) {
+      const RigCamera& camera = rig.cameras[k];
+      secondaries.push_back({camera.intrinsics, camera.T_world_camera.inverse() * T_world_principal});
+    }
+  }
+  return secondaries;
+}
+
 void check_matches(const DepthGridMap& map, const DepthGrid& grid, std::span<const SecondaryCamera> secondaries) {
   if (const auto* closed_form = std::get_if<ClosedFormMap>(&map)) {
     // It keeps no intrinsics and poses but what it derives from them.

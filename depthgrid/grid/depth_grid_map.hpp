@@ -3,7 +3,9 @@
 
 #include <span>
 #include <variant>
+#include <vector>
 
+#include "depthgrid/core/rig.hpp"
 #include "depthgrid/grid/closed_form_map.hpp"
 #include "depthgrid/grid/one_pixel_map.hpp"
 #include "depthgrid/grid/pixel_list_map.hpp"
@@ -13,6 +15,10 @@ namespace depthgrid::grid {
 /// Any storage of the map. Evaluation visits it once a call, not once a cell. All storages have
 /// ray(u, v, k).confirm(n, depth_m) and camera_count().
 using DepthGridMap = std::variant<ClosedFormMap, OnePixelMap, PixelListMap>;
+
+/// The cameras of the rig other than `principal`, in the rig's order, relative to it. Throws Error when there is no
+/// such camera.
+[[nodiscard]] std::vector<SecondaryCamera> secondary_cameras(const Rig& rig, std::size_t principal);
 
 /// Throws Error when the map was made for other cameras, another grid or other relative poses than these; the message
 /// names the first number that differs (see kCalibrationTolerance).

@@ -31,43 +31,57 @@ void validate(const EvaluationSettings& settings) {
   depthgrid::validate(settings.pose);
 }
 
+namespace {
+
+/// The rig with exact rotations: a pose that is off by up to the tolerance would scale distances.
+Rig checked(Rig rig, std::size_t principal) {
+  validate(rig);
+  if (principal >= rig.cameras.size()) {
+    fail("grid evaluator: principal camera is ", principal, ", the rig has ", rig.cameras.size(), " cameras");
+  }
+  if (rig.cameras.size() > kMostSecondaries + 1) {
+    fail("grid evaluator: the rig has ", rig.cameras.size(), " cameras, at most ", kMostSecondaries + 1,
+         " are supported");
+  }
+  for (RigCamera& camera : rig.cameras) {
+    const auto& c = camera.distortion.coefficients;
+    if (camera.distortion.model != Distortion::Model::none &&
+        std::any_of(c.begin(), c.end(), [](double value) { return value != 0; })) {
+      fail("grid evaluator: camera '", camera.id,
+           "' has lens distortion, its images must be undistorted first and the rig given without distortion");
+    }
+    camera.T_world_camera = pose_from_matrix(camera.T_world_camera.matrix());
+  }
+  return rig;
+}
+
+}  // namespace
+
 struct GridEvaluator::State {
+  /// `rig` is checked already.
   State(const Rig& rig, std::size_t principal_index, const DepthQuantisation& quantisation,
         const EvaluationSettings& settings_in, std::shared_ptr<const DepthGridMap> map_in)
       : settings(settings_in),
         principal(principal_index),
-        grid(checked_camera(rig, principal_index).intrinsics, quantisation),
+        grid(rig.cameras[principal_index].intrinsics, quantisation),
         T_principal_world(rig.cameras[principal_index].T_world_camera.inverse()),
         map(std::move(map_in)) {
-    validate(rig);
     grid::validate(settings);
-    if (rig.cameras.size() > kMostSecondaries + 1) {
-      fail("grid evaluator: the rig has ", rig.cameras.size(), " cameras, at most ", kMostSecondaries + 1,
-           " are supported");
-    }
     const bool corrected = settings.variant == Variant::corrected;
     const Pose& T_world_principal = rig.cameras[principal].T_world_camera;
-    std::vector<SecondaryCamera> secondaries;
     for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
       const RigCamera& camera = rig.cameras[k];
-      if (camera.distortion.model != Distortion::Model::none) {
-        const auto& c = camera.distortion.coefficients;
-        if (std::any_of(c.begin(), c.end(), [](double value) { return value != 0; })) {
-          fail("grid evaluator: camera '", camera.id,
-               "' has lens distortion, its images must be undistorted first and the rig given without distortion");
-        }
-      }
       observations.emplace_back(camera, corrected ? &settings.sensor : nullptr);
       const Pose T_camera_principal = camera.T_world_camera.inverse() * T_world_principal;
       if (k != principal) {
-        secondaries.push_back({camera.intrinsics, T_camera_principal});
         secondary_index.push_back(k);
       }
       carvers.emplace_back(camera.intrinsics, T_camera_principal, camera.rule.near_m, settings.pose);
-      views.push_back({camera.intrinsics, camera.T_world_camera.inverse(), camera.rule.near_m, nullptr});
+      views.push_back({camera.intrinsics, camera.T_world_camera.inverse(), camera.rule.near_m, nullptr, nullptr});
     }
     for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
       views[k].measured_m = &observations[k].measured_m();
+      views[k].is_robot = observations[k].is_robot().data();
       if (k != principal || has_pose_margin()) {
         carving.push_back({&carvers[k], &observations[k].free_m()});
       }
@@ -76,18 +90,12 @@ struct GridEvaluator::State {
       secondary_depths_m.push_back(observations[k].removed_m().data());
     }
     principal_near_m = rig.cameras[principal].rule.near_m;
+    const std::vector<SecondaryCamera> secondaries = secondary_cameras(rig, principal);
     if (map) {
       check_matches(*map, grid, secondaries);
     } else {
       map = std::make_shared<const DepthGridMap>(ClosedFormMap(grid, secondaries));
     }
-  }
-
-  static const RigCamera& checked_camera(const Rig& rig, std::size_t index) {
-    if (index >= rig.cameras.size()) {
-      fail("grid evaluator: principal camera is ", index, ", the rig has ", rig.cameras.size(), " cameras");
-    }
-    return rig.cameras[index];
   }
 
   [[nodiscard]] bool has_pose_margin() const noexcept {
@@ -120,7 +128,7 @@ struct GridEvaluator::State {
 
 GridEvaluator::GridEvaluator(const Rig& rig, std::size_t principal, const DepthQuantisation& quantisation,
                              const EvaluationSettings& settings, std::shared_ptr<const DepthGridMap> map)
-    : state_(std::make_unique<State>(rig, principal, quantisation, settings, std::move(map))) {}
+    : state_(std::make_unique<State>(checked(rig, principal), principal, quantisation, settings, std::move(map))) {}
 GridEvaluator::~GridEvaluator() = default;
 GridEvaluator::GridEvaluator(GridEvaluator&&) noexcept = default;
 GridEvaluator& GridEvaluator::operator=(GridEvaluator&&) noexcept = default;
@@ -134,12 +142,12 @@ bool GridEvaluator::update(std::span<const Frame> frames) noexcept {
   for (std::size_t k = 0; k < state_->observations.size(); ++k) {
     Observation& observation = state_->observations[k];
     complete = observation.update(k < frames.size() ? frames[k] : Frame{}) && complete;
-    if (observation.present()) {
+    if (observation.present() && std::isfinite(observation.time_s())) {
       newest_s = std::max(newest_s, observation.time_s());
     }
   }
   state_->stale = std::any_of(state_->observations.begin(), state_->observations.end(), [&](const Observation& o) {
-    return o.present() && newest_s - o.time_s() > state_->settings.max_frame_age_s;
+    return o.present() && !(std::abs(newest_s - o.time_s()) <= state_->settings.max_frame_age_s);
   });
   return complete;
 }
@@ -152,8 +160,9 @@ Evaluation GridEvaluator::evaluate(const Eigen::Vector3d& p_world, EvaluationCou
     return result;
   }
   const ControlPoint point = s.into_depth_space(p_world);  // (1), (2)
-  Eigen::Vector3d border_camera;
-  const double border_m = s.signed_border_distance_m(point, border_camera);
+  Eigen::Vector3d border_camera = point.p_camera;
+  // A point so far away that its coordinates overflow lies outside.
+  const double border_m = point.p_camera.allFinite() ? s.signed_border_distance_m(point, border_camera) : -1.0;
   if (border_m > 0) {
     EvaluationCount local;
     ObstacleSet obstacles(s.settings.rho_m, s.settings.repulsion_alpha);
@@ -170,6 +179,10 @@ void GridEvaluator::evaluate(std::span<const Eigen::Vector3d> points_world, std:
                              EvaluationCount* count) const noexcept {
   for (std::size_t i = 0; i < points_world.size() && i < answers.size(); ++i) {
     answers[i] = evaluate(points_world[i], count);
+  }
+  // What has no point must not keep an answer of the call before.
+  for (std::size_t i = points_world.size(); i < answers.size(); ++i) {
+    answers[i] = Evaluation{};
   }
 }
 
@@ -297,8 +310,8 @@ void GridEvaluator::State::limit_to_grid(const ControlPoint& point, double borde
   if (inside) {
     nearest.direction_world = T_world_principal.linear() * (border_camera - point.p_camera).normalized();
   }
-  if (settings.collect == Collect::hybrid && result.obstacle_points == 0) {
-    result.hybrid_direction_world = nearest.direction_world;
+  if (settings.collect == Collect::hybrid) {
+    result.hybrid_direction_world = nearest.direction_world;  // the border is nearest, so it leads
   }
 }
 

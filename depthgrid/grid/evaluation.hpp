@@ -17,7 +17,7 @@ namespace depthgrid::grid {
 
 enum class Variant : std::uint8_t {
   letter,     ///< what is printed, errors included
-  corrected,  ///< never over-estimates the distance to the quantised obstacle set
+  corrected,  ///< never over-estimates the distance to what no camera has seen free
 };
 
 /// Which pixels of the principal camera are evaluated.
@@ -44,11 +44,13 @@ struct EvaluationSettings {
   Collect collect = Collect::minimum;
   OutsideSpace outside = OutsideSpace::ignored;
   double rho_m = 0.4;            ///< surveillance radius
-  SensorMargin sensor;           ///< corrected only
-  PoseMargin pose;               ///< corrected only
+  SensorMargin sensor;           ///< corrected only; one for all cameras: take the worst
+  PoseMargin pose;               ///< corrected only; one for all cameras: take the worst
   double direction_blend = 0.5;  ///< b in [0, 1]: weight of the other obstacles in corrected's hybrid direction
   double repulsion_alpha = 6.0;  ///< shape of the repulsion that weights them
-  double max_frame_age_s = 1e9;  ///< a frame older than the newest by more than this makes answers stale
+  double max_frame_age_s =
+      1e9;  ///< a frame older than the newest by more than this, or without a
+            ///< finite time, makes answers stale; all cameras frozen together is for the caller to see
 };
 
 /// Throws Error with value and rule.
@@ -84,14 +86,16 @@ class GridEvaluator {
   GridEvaluator(const GridEvaluator&) = delete;
   GridEvaluator& operator=(const GridEvaluator&) = delete;
 
-  /// Takes the newest frame of every camera, in the rig's order. A camera whose frame is missing (no data) or has
-  /// another size than its calibration counts as "no measurement" everywhere; false when there was one.
+  /// Takes the newest frame of every camera, in the rig's order. A camera whose frame is missing (no data), has another
+  /// size or depth scale than the rig says, or half a robot view counts as "no measurement" everywhere; false when
+  /// there was one.
   bool update(std::span<const Frame> frames) noexcept;
 
   /// Distance of one control point in the world frame (metres). A non-finite point gives not_evaluated.
   [[nodiscard]] Evaluation evaluate(const Eigen::Vector3d& p_world, EvaluationCount* count = nullptr) const noexcept;
 
-  /// Many control points; answers.size() must equal points_world.size().
+  /// Many control points; answers.size() should equal points_world.size(): answers without a point are not_evaluated.
+  /// `count` must not be shared between threads.
   void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Evaluation> answers,
                 EvaluationCount* count = nullptr) const noexcept;
 

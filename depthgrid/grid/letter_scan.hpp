@@ -124,7 +124,7 @@ class LetterScan {
   [[nodiscard]] int cells_within_rho(double d_m) const noexcept {
     const DepthQuantisation& q = grid_.quantisation();
     if (q.growth == 0) {
-      return static_cast<int>(std::floor(settings_.rho_m / q.step_m * (1 + 1e-12)));
+      return static_cast<int>(std::min(std::floor(settings_.rho_m / q.step_m * (1 + 1e-12)), 1e9));
     }
     return grid_.cell_of(d_m + settings_.rho_m) - grid_.cell_of(d_m);
   }

@@ -1,11 +1,13 @@
 #include "depthgrid/grid/observation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace depthgrid::grid {
 
 Observation::Observation(const RigCamera& camera, const SensorMargin* margins)
     : rule_(camera.rule),
+      metres_per_unit_(camera.metres_per_unit),
       with_free_depth_(margins != nullptr),
       measured_m_(camera.intrinsics.width_px, camera.intrinsics.height_px),
       removed_m_(camera.intrinsics.width_px, camera.intrinsics.height_px),
@@ -14,21 +16,42 @@ Observation::Observation(const RigCamera& camera, const SensorMargin* margins)
       free_(with_free_depth_ ? camera.intrinsics.width_px : 1, with_free_depth_ ? camera.intrinsics.height_px : 1,
             margins != nullptr ? *margins : SensorMargin{}) {}
 
+bool Observation::is_usable(const Frame& frame) const noexcept {
+  const DepthView& depth = frame.depth;
+  const RobotView& robot = frame.robot;
+  const bool units = depth.format == DepthFormat::uint16_units;
+  const std::ptrdiff_t row_bytes =
+      depth.width_px * static_cast<std::ptrdiff_t>(units ? sizeof(std::uint16_t) : sizeof(float));
+  return depth.data != nullptr && depth.width_px == measured_m_.width_px() &&
+         depth.height_px == measured_m_.height_px() &&
+         (depth.stride_bytes == 0 || std::abs(depth.stride_bytes) >= row_bytes) &&
+         (!units || depth.metres_per_unit == metres_per_unit_) &&
+         (robot.near_m == nullptr) == (robot.far_m == nullptr) &&
+         (robot.near_m == nullptr || robot.stride_px == 0 || std::abs(robot.stride_px) >= depth.width_px);
+}
+
 bool Observation::update(const Frame& frame) noexcept {
-  present_ = frame.depth.data != nullptr && frame.depth.width_px == measured_m_.width_px() &&
-             frame.depth.height_px == measured_m_.height_px();
+  present_ = is_usable(frame);
   RobotView robot;
   if (present_) {
-    normalise(frame.depth, rule_, measured_m_);
+    DepthView depth = frame.depth;
+    if (depth.stride_bytes == 0) {
+      depth.stride_bytes =
+          depth.width_px * static_cast<std::ptrdiff_t>(depth.format == DepthFormat::uint16_units ? sizeof(std::uint16_t)
+                                                                                                 : sizeof(float));
+    }
+    normalise(depth, rule_, measured_m_);
     time_s_ = frame.time_s;
     robot = frame.robot;
+    if (robot.stride_px == 0) {
+      robot.stride_px = depth.width_px;
+    }
   } else {
     std::fill_n(measured_m_.data(), is_robot_.size(), 0.0F);
   }
+  remove_robot(robot);
   if (with_free_depth_) {
     free_.update(measured_m_, robot);
-  } else {
-    remove_robot(robot);
   }
   return present_;
 }
@@ -44,7 +67,7 @@ void Observation::remove_robot(const RobotView& robot) noexcept {
     const float* far_m = robot.far_m + robot.stride_px * v;
     for (int u = 0; u < measured_m_.width_px(); ++u) {
       const float depth_m = measured_m_.at(u, v);
-      if (near_m[u] > 0 && depth_m >= near_m[u] && depth_m <= far_m[u]) {
+      if (near_m[u] > 0 && depth_m >= near_m[u] && depth_m <= far_m[u] && std::isfinite(far_m[u])) {
         removed_m_.at(u, v) = far_m[u];
         is_robot_[measured_m_.index(u, v)] = 1;
       }

@@ -17,7 +17,8 @@ class Observation {
   /// With `margins` the free depth g is prepared as well (corrected); without, only what the letter reads.
   Observation(const RigCamera& camera, const SensorMargin* margins);
 
-  /// Takes a frame. False when it has no data or another size than the camera: then nothing is measured anywhere.
+  /// Takes a frame. False when it is unusable: no data, another size or depth scale than the camera, rows that overlap,
+  /// or half a robot view. Then nothing is measured anywhere.
   bool update(const Frame& frame) noexcept;
 
   /// Measured depth, 0 = no measurement.
@@ -25,8 +26,8 @@ class Observation {
   /// What the letter's cases read: the measured depth, or at a removed robot's pixel the depth up to which the robot
   /// itself excludes an obstacle (the far end of its interval). 0 = no measurement.
   [[nodiscard]] const DepthImage& removed_m() const noexcept { return removed_m_; }
-  /// 1 where the robot was removed: the measured depth lies inside the robot's interval. A hand in front of the robot
-  /// does not, so it stays.
+  /// 1 where the robot was removed (both variants): the measured depth lies inside the robot's interval. A hand in
+  /// front of the robot does not, so it stays.
   [[nodiscard]] const std::vector<std::uint8_t>& is_robot() const noexcept { return is_robot_; }
   /// Depth up to which each pixel's frustum is free (corrected only).
   [[nodiscard]] const DepthImage& free_m() const noexcept { return free_.image(); }
@@ -36,7 +37,10 @@ class Observation {
  private:
   void remove_robot(const RobotView& robot) noexcept;
 
+  [[nodiscard]] bool is_usable(const Frame& frame) const noexcept;
+
   MeasurementRule rule_;
+  double metres_per_unit_;
   bool with_free_depth_;
   DepthImage measured_m_;
   DepthImage removed_m_;

@@ -128,6 +128,94 @@ TEST_P(BothVariants, AMissingCameraFreesNothing) {
   EXPECT_EQ(evaluator.evaluate({0, 0, 1.2}).nearest.state, ProximityState::beyond_rho);
 }
 
+TEST_P(BothVariants, AnUnusableFrameFreesNothing) {
+  TwoCameras two;
+  two.fill(0, 0.5F);
+  two.fill(1, 2.35F);
+  GridEvaluator evaluator = two.evaluator(of(GetParam()));
+  const Eigen::Vector3d p(0, 0, 1.2);
+  ASSERT_TRUE(evaluator.update(two.frames));
+  ASSERT_EQ(evaluator.evaluate(p).nearest.state, ProximityState::beyond_rho);
+  const auto refused = [&](auto&& change) {
+    std::vector<Frame> frames = two.frames;
+    change(frames[1]);
+    return !evaluator.update(frames) && evaluator.evaluate(p).nearest.distance_m < 1e-9;
+  };
+  EXPECT_TRUE(refused([](Frame& f) { f.robot.far_m = nullptr; })) << "half a robot view";
+  EXPECT_TRUE(refused([](Frame& f) { f.robot.stride_px = 3; })) << "robot rows that overlap";
+  EXPECT_TRUE(refused([](Frame& f) { f.depth.stride_bytes = 4; })) << "rows that overlap";
+  const std::vector<std::uint16_t> units(kWidth * kHeight, 2350);
+  EXPECT_TRUE(refused([&](Frame& f) { f.depth = depth_view(units, kWidth, kHeight, 0.01); }))
+      << "another depth scale than the rig";
+  std::vector<Frame> frames = two.frames;
+  frames[1].depth = depth_view(units, kWidth, kHeight, 0.001);
+  EXPECT_TRUE(evaluator.update(frames));
+  frames[1] = two.frames[1];
+  frames[1].depth.stride_bytes = 0;  // a view made by hand: rows without padding
+  frames[1].robot.stride_px = 0;
+  EXPECT_TRUE(evaluator.update(frames));
+  EXPECT_EQ(evaluator.evaluate(p).nearest.state, ProximityState::beyond_rho);
+}
+
+TEST_P(BothVariants, AnEndlessRobotIsNoRobot) {
+  TwoCameras two;
+  two.fill(0, 1.45F);
+  two.fill(1, 0.0F);
+  std::fill(two.robot_near_m[0].begin(), two.robot_near_m[0].end(), 1.4F);
+  std::fill(two.robot_far_m[0].begin(), two.robot_far_m[0].end(), std::numeric_limits<float>::infinity());
+  GridEvaluator evaluator = two.evaluator(of(GetParam()));
+  ASSERT_TRUE(evaluator.update(two.frames));
+  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.25}).nearest.distance_m, 0.2, 1e-6);
+}
+
+TEST_P(BothVariants, WhatTheRobotHidesIsNotMeasured) {
+  TwoCameras two;
+  two.fill(0, 1.0F);
+  std::fill(two.robot_near_m[0].begin(), two.robot_near_m[0].end(), 0.995F);
+  std::fill(two.robot_far_m[0].begin(), two.robot_far_m[0].end(), 1.008F);
+  GridEvaluator evaluator = two.evaluator(of(GetParam()));
+  ASSERT_TRUE(evaluator.update(two.frames));
+  const Evaluation answer = evaluator.evaluate({0, 0, 0.9});
+  EXPECT_LT(answer.nearest.distance_m, 0.13);
+  EXPECT_EQ(answer.nearest.state, ProximityState::occluded);
+}
+
+TEST_P(BothVariants, AbsurdRadiiAndPointsEndInAState) {
+  TwoCameras two;
+  two.fill(0, 2.0F);
+  two.fill(1, 0.9F);
+  EvaluationSettings settings = of(GetParam());
+  settings.rho_m = 1e12;
+  GridEvaluator evaluator = two.evaluator(settings);
+  ASSERT_TRUE(evaluator.update(two.frames));
+  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.7}).nearest.distance_m, 0.3, 1e-6);
+  for (const double huge : {1e300, -1e308, 1.7e308}) {
+    EXPECT_EQ(evaluator.evaluate({huge, huge, huge}).nearest.state, ProximityState::outside);
+    EXPECT_EQ(evaluator.evaluate({huge, 0, 1}).nearest.state, ProximityState::outside);
+  }
+}
+
+TEST_P(BothVariants, AnswersWithoutAPointKeepNothing) {
+  TwoCameras two;
+  two.fill(0, 2.0F);
+  GridEvaluator evaluator = two.evaluator(of(GetParam()));
+  evaluator.update(two.frames);
+  std::vector<Evaluation> answers(2);
+  evaluator.evaluate(std::vector<Eigen::Vector3d>{{0, 0, 1.5}, {0, 0, 1.6}}, answers);
+  evaluator.evaluate(std::vector<Eigen::Vector3d>{{0, 0, 1.5}}, answers);
+  EXPECT_EQ(answers[1].nearest.state, ProximityState::not_evaluated);
+}
+
+TEST_P(BothVariants, APoseThatIsSlightlyOffIsMadeExact) {
+  TwoCameras two;
+  two.fill(0, 2.0F);
+  two.fill(1, 0.9F);
+  two.rig.cameras[0].T_world_camera.linear() *= 1.0004;
+  GridEvaluator evaluator = two.evaluator(of(GetParam()));
+  ASSERT_TRUE(evaluator.update(two.frames));
+  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.7}).nearest.distance_m, 0.3, 1e-6);
+}
+
 TEST_P(BothVariants, PointsOutsideTheGridHaveNoDistance) {
   TwoCameras two;
   two.fill(0, 2.0F);
@@ -161,6 +249,7 @@ TEST_P(BothVariants, SpaceOutsideTheGridAsObstacle) {
   const Evaluation open = ignoring.evaluate({0, 0, 0.25});
   EXPECT_EQ(open.nearest.state, ProximityState::beyond_rho);
   EXPECT_NEAR(open.nearest.known_to_m, 0.05, 1e-12);
+  EXPECT_NEAR(lower_bound_after(open.nearest, 0.01, 1.0), 0.04, 1e-12) << "something may stand at the border";
 }
 
 TEST_P(BothVariants, NonFinitePointsAreNotEvaluated) {
@@ -217,9 +306,11 @@ TEST_P(BothVariants, AnOldFrameMakesAnswersStale) {
   two.frames[1].time_s = 10.04;
   evaluator.update(two.frames);
   EXPECT_FALSE(evaluator.evaluate({0, 0, 1.5}).nearest.stale);
-  two.frames[1].time_s = 10.06;
-  evaluator.update(two.frames);
-  EXPECT_TRUE(evaluator.evaluate({0, 0, 1.5}).nearest.stale);
+  for (const double bad : {10.06, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    two.frames[1].time_s = bad;
+    evaluator.update(two.frames);
+    EXPECT_TRUE(evaluator.evaluate({0, 0, 1.5}).nearest.stale) << bad;
+  }
 }
 
 TEST_P(BothVariants, TheCallsAllocateNothing) {
@@ -319,6 +410,15 @@ TEST(Evaluator, RefusesBadSettings) {
                 r.cameras[1].distortion.coefficients[0] = 0.1;
               }),
               HasSubstr("camera 'back' has lens distortion"));
+  EXPECT_THAT(message([](auto&, auto& r, auto&) { r.cameras[1].T_world_camera.translation().x() = 5e6; }),
+              HasSubstr("translation reaches 5000000 m, must be at most 100000"));
+  EXPECT_THAT(message([](auto&, auto& r, auto&) { r.cameras[1].intrinsics.fx_px = 1e9; }),
+              HasSubstr("fx is 1000000000 px, must be at most 1000000"));
+  EXPECT_THAT(message([](auto&, auto& r, auto&) {
+                r.T_floor_world = Pose::Identity();
+                r.T_floor_world->linear() *= 1.1;
+              }),
+              HasSubstr("T_floor_world: rotation deviates"));
 }
 
 }  // namespace
