@@ -17,7 +17,6 @@ set(depthgrid_package_of_Threads::Threads Threads)
 set(depthgrid_package_of_ZLIB::ZLIB ZLIB)
 set(depthgrid_package_of_PNG::PNG PNG)
 set(depthgrid_package_of_hwy::hwy hwy)
-set(depthgrid_package_of_spdlog::spdlog spdlog)
 set(depthgrid_package_of_PkgConfig::CAIRO "pkg-config CAIRO cairo")
 
 set(depthgrid_components "")
