@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iomanip>
 #include <limits>
+#include <sstream>
 
 namespace depthgrid::report {
 
 namespace {
 
 std::string metres(double value_m) {
-  char text[32];
-  (void)std::snprintf(text, sizeof text, "%.1f m", value_m);
-  return text;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << value_m << " m";
+  return text.str();
 }
 
 }  // namespace

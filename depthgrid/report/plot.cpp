@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 #include "depthgrid/core/error.hpp"
 
@@ -53,9 +53,10 @@ struct Axis {
 };
 
 std::string number(double value) {
-  char text[32];
-  (void)std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  std::ostringstream text;
+  text.precision(6);
+  text << value;
+  return text.str();
 }
 
 void draw_legend(Canvas& canvas, const Rectangle& frame, const std::vector<Series>& series) {
@@ -99,7 +100,8 @@ std::vector<double> ticks(double lower, double upper, int most, bool logarithmic
   const double slack = 1e-9;
   if (logarithmic) {
     const bool few = std::log10(upper / lower) < 2.5;
-    for (double power = std::floor(std::log10(lower)); power <= std::ceil(std::log10(upper)); ++power) {
+    const int highest = static_cast<int>(std::ceil(std::log10(upper)));
+    for (int power = static_cast<int>(std::floor(std::log10(lower))); power <= highest; ++power) {
       for (const double factor : {1.0, 2.0, 5.0}) {
         const double value = factor * std::pow(10.0, power);
         if ((few || factor == 1.0) && value >= lower * (1 - slack) && value <= upper * (1 + slack)) {
@@ -115,8 +117,9 @@ std::vector<double> ticks(double lower, double upper, int most, bool logarithmic
   for (const double factor : {5.0, 2.0, 1.0}) {
     step = factor * power >= rough * (1 - slack) ? factor * power : step;
   }
-  for (double n = std::ceil(lower / step - slack); n * step <= upper + slack * step; ++n) {
-    result.push_back(n == 0 ? 0.0 : n * step);
+  const double first = std::ceil(lower / step - slack);
+  for (int i = 0; (first + i) * step <= upper + slack * step; ++i) {
+    result.push_back(first + i == 0 ? 0.0 : (first + i) * step);
   }
   return result;
 }
