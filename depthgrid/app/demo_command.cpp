@@ -3,13 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <iomanip>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 #include "depthgrid/app/demo_picture.hpp"
 #include "depthgrid/grid/evaluation.hpp"
 #include "depthgrid/simulation/demo_scene.hpp"
+
+// printf lays out the table; streams would need a line a column.
+// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg)
 
 namespace depthgrid::app {
 
@@ -50,11 +55,10 @@ std::vector<Proximity> evaluate(const simulation::DemoScene& demo, std::span<con
 }
 
 std::string cell(const Proximity& answer) {
-  char text[64];
-  const bool bound = answer.state == ProximityState::beyond_rho;
-  (void)std::snprintf(text, sizeof text, "%2s%4.0f  %s", bound ? ">=" : "", 1000 * answer.distance_m,
-                      std::string(to_string(answer.state)).c_str());
-  return text;
+  std::ostringstream text;
+  text << (answer.state == ProximityState::beyond_rho ? ">=" : "  ") << std::fixed << std::setprecision(0)
+       << std::setw(4) << 1000 * answer.distance_m << "  " << to_string(answer.state);
+  return text.str();
 }
 
 bool has_shadow_obstacle(const Proximity& answer, double true_m, double rho_m) {
@@ -134,3 +138,5 @@ void add_demo_command(CLI::App& app) {
 }
 
 }  // namespace depthgrid::app
+
+// NOLINTEND(cppcoreguidelines-pro-type-vararg)

@@ -145,14 +145,7 @@ std::shared_ptr<const grid::DepthGridMap> load_map(const DistancesOptions& optio
   if (options.map_file.empty()) {
     return nullptr;
   }
-  std::vector<grid::SecondaryCamera> secondaries;
-  const Pose& T_world_principal = rig.cameras[principal].T_world_camera;
-  for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
-    if (k != principal) {
-      const auto& camera = rig.cameras[k];
-      secondaries.push_back({camera.intrinsics, camera.T_world_camera.inverse() * T_world_principal});
-    }
-  }
+  const std::vector<grid::SecondaryCamera> secondaries = grid::secondary_cameras(rig, principal);
   const grid::DepthGrid depth_grid(rig.cameras[principal].intrinsics, cells);
   return std::make_shared<const grid::DepthGridMap>(grid::load_map(options.map_file, depth_grid, secondaries));
 }

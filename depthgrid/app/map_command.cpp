@@ -1,12 +1,12 @@
 #include "depthgrid/app/map_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
+#include <iomanip>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,14 +38,14 @@ struct BuildOptions {
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
 
 std::string size_text(std::uint64_t bytes) {
-  std::array<char, 64> text{};
-  const double size = static_cast<double>(bytes);
+  std::ostringstream text;
+  const auto size = static_cast<double>(bytes);
   if (size >= 0.1 * kGiB) {
-    (void)std::snprintf(text.data(), text.size(), "%.2f GiB", size / kGiB);
+    text << std::fixed << std::setprecision(2) << size / kGiB << " GiB";
   } else {
-    (void)std::snprintf(text.data(), text.size(), "%.3f MB", size / 1e6);
+    text << std::fixed << std::setprecision(3) << size / 1e6 << " MB";
   }
-  return text.data();
+  return text.str();
 }
 
 std::string storage_text(grid::MapStorage storage) {
@@ -90,14 +90,7 @@ void build(const BuildOptions& options) {
   const Rig rig = chosen_cameras(options);
   const std::size_t principal = options.principal.empty() ? 0 : camera_index(rig, options.principal);
   const grid::DepthGrid depth_grid(rig.cameras[principal].intrinsics, options.cells);
-  std::vector<grid::SecondaryCamera> secondaries;
-  for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
-    if (k != principal) {
-      const RigCamera& camera = rig.cameras[k];
-      secondaries.push_back(
-          {camera.intrinsics, camera.T_world_camera.inverse() * rig.cameras[principal].T_world_camera});
-    }
-  }
+  const std::vector<grid::SecondaryCamera> secondaries = grid::secondary_cameras(rig, principal);
   const auto storage = options.storage == "lists" ? grid::MapStorage::pixel_lists : grid::MapStorage::one_pixel;
 
   grid::MapBuildSettings settings;
@@ -139,16 +132,15 @@ void info(const std::string& file) {
   const grid::MapFileHeader header = grid::read_map_info(file);
   const grid::MapCalibration& calibration = header.calibration;
   const grid::DepthGrid depth_grid(calibration.principal, calibration.quantisation);
-  std::array<char, 24> fingerprint{};
-  (void)std::snprintf(fingerprint.data(), fingerprint.size(), "%016llx",
-                      static_cast<unsigned long long>(header.fingerprint));
+  std::ostringstream fingerprint;
+  fingerprint << std::hex << std::setw(16) << std::setfill('0') << header.fingerprint;
   std::string text = "file         " + file + ", version " + std::to_string(header.version) + ", " +
                      size_text(header.file_bytes) + "\nstorage      " + storage_text(header.storage) + ", " +
                      std::to_string(header.cells) + " cells";
   if (header.storage == grid::MapStorage::pixel_lists) {
     text += ", " + std::to_string(header.rows) + " row spans";
   }
-  text += "\ncalibration  " + std::string(fingerprint.data()) + "\nprincipal    " + camera_text(calibration.principal) +
+  text += "\ncalibration  " + std::string(fingerprint.str()) + "\nprincipal    " + camera_text(calibration.principal) +
           "\ndepth cells  " + std::to_string(depth_grid.count()) + " from " + exact_text(depth_grid.d_min_m()) +
           " to " + micro_text(depth_grid.d_max_m()) + " m, step " + exact_text(calibration.quantisation.step_m) +
           " m, growth " + exact_text(calibration.quantisation.growth) + "\n";
