@@ -92,6 +92,20 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
             "the "
             "letter states for its whole algorithm, is "
          << (two->rate() >= 300 ? "met" : "missed") << ": " << static_cast<int>(two->rate()) << " a second.\n";
+    const RateRow* one = find(rows, "letter, hybrid", 1);
+    if (one != nullptr) {
+      const double pixels_ms = milliseconds(*one, 0.5);
+      const double cells_ms = milliseconds(*two, 0.5) - pixels_ms;
+      const double cells = static_cast<double>(two->count.cells) / static_cast<double>(two->evaluation_s.size()) -
+                           static_cast<double>(one->count.cells) / static_cast<double>(one->evaluation_s.size());
+      page << "- Where its time goes (medians): " << pixels_ms << " ms visit the pixels, what one camera alone takes; "
+           << cells_ms << " ms judge " << cells / 1e6 << " million cells with the other camera, "
+           << 1e6 * cells_ms / cells << " ns a cell. `letter, minimum` visits fewer of both and reaches "
+           << static_cast<int>(find(rows, "letter, minimum", 2) != nullptr ? find(rows, "letter, minimum", 2)->rate()
+                                                                           : 0)
+           << " a second.\n- The clock of a shared machine varies: compare the rows of one run with each other, not "
+              "runs.\n";
+    }
   }
   for (const char* name : {"letter, hybrid", "letter, minimum", "corrected, hybrid", "corrected, minimum"}) {
     const RateRow* few = find(rows, name, 2);
