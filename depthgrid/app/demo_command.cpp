@@ -80,8 +80,10 @@ void print_closing(const std::vector<double>& true_m, const DemoAnswers& answers
       }
     }
   }
-  std::printf("\n%d of %zu points have a shadow obstacle with one camera; %d of them lose it with two.\n", shadowed,
-              true_m.size(), lost);
+  std::printf(
+      "\n%d of %zu points have a shadow obstacle with one camera; %d of them lose it with two\n"
+      "(a shadow obstacle: an answer more than 30 mm short of the true distance).\n",
+      shadowed, true_m.size(), lost);
   if (farthest_above_m > 0) {
     std::printf("The answer farthest above the true distance is %.1f mm above it.\n", 1000 * farthest_above_m);
   } else {

@@ -283,7 +283,7 @@ void add_distances_command(CLI::App& app) {
   add_map_option(*command, *options);
   command->footer(
       "Examples:\n"
-      "  depthgrid distances ../shared/data/kinect3_ball --point 0.4,0.2,1.1 --in floor --frames 0:80:8\n"
+      "  depthgrid distances ../shared/data/kinect3_ball --point hand=0.1,2.6,1.2 --in floor --frames 0:80:8\n"
       "  depthgrid distances rig.json --cameras cam1,cam3 --principal cam3 --points points.csv \\\n"
       "      --sensor kinect-v1 --format jsonl --output distances.jsonl\n"
       "One line a frame and point. distance_m is empty (null) where it is not known; see docs/command.md.");

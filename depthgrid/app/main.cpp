@@ -40,7 +40,7 @@ int run(int argc, char** argv) {
       "Examples:\n"
       "  depthgrid demo\n"
       "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"
-      "  depthgrid distances ../shared/data/kinect3_ball --point 0.4,0.2,1.1 --in floor --frames 0:80:8\n"
+      "  depthgrid distances ../shared/data/kinect3_ball --point hand=0.1,2.6,1.2 --in floor --frames 0:80:8\n"
       "'depthgrid COMMAND --help' explains a command. Exit codes: 0 done, 1 error, 2 broken command line.");
   depthgrid::app::add_demo_command(app);
   depthgrid::app::add_distances_command(app);
@@ -57,6 +57,9 @@ int run(int argc, char** argv) {
     return report(std::string(error.what()) + " (depthgrid --help explains)", kUsage);
   } catch (const depthgrid::app::UsageError& error) {
     return report(error.what(), kUsage);
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return report("standard output cannot be written", kFailed);
   }
   return 0;
 }

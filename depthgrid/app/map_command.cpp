@@ -194,7 +194,7 @@ void add_map_command(CLI::App& app) {
       "Examples:\n"
       "  depthgrid map build ../shared/data/kinect3_ball --count 300 --output ball.map\n"
       "  depthgrid map info ball.map\n"
-      "  depthgrid distances ../shared/data/kinect3_ball --variant letter --map ball.map --point 0.4,0.2,1.1 --in "
+      "  depthgrid distances ../shared/data/kinect3_ball --variant letter --map ball.map --point hand=0.1,2.6,1.2 --in "
       "floor");
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/file_target.hpp"
 
 namespace depthgrid::grid {
 namespace {
@@ -86,13 +87,14 @@ MappedFile::~MappedFile() {
   ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }
 
-void write_file_whole(const std::string& path, std::span<const std::span<const std::byte>> parts) {
+void write_file_whole(const std::string& name, std::span<const std::span<const std::byte>> parts) {
+  const std::string path = replaceable_file(name).string();
   static std::atomic<unsigned> serial{0};
   const std::string temporary = path + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the system's own interface
   Descriptor descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!descriptor.valid()) {
-    fail_with_reason(temporary, "create");
+    fail_with_reason(path, "write");
   }
   const bool written = std::all_of(parts.begin(), parts.end(),
                                    [&](std::span<const std::byte> part) { return write_all(descriptor.get(), part); });

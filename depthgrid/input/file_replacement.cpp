@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/file_target.hpp"
 
 namespace depthgrid::input {
 namespace {
@@ -25,7 +26,7 @@ std::string temporary_suffix() {
 
 }  // namespace
 
-FileReplacement::FileReplacement(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
+FileReplacement::FileReplacement(const std::filesystem::path& file) : file_(replaceable_file(file)), temporary_(file_) {
   temporary_ += temporary_suffix();
   // NOLINTNEXTLINE(cppcoreguidelines-prefer-member-initializer): the name must be complete first
   stream_ = std::fopen(temporary_.c_str(), "wb");

@@ -11,7 +11,7 @@ namespace depthgrid::input {
 class FileReplacement {
  public:
   /// Opens the temporary file. Throws Error naming `file` and the system's reason.
-  explicit FileReplacement(std::filesystem::path file);
+  explicit FileReplacement(const std::filesystem::path& file);
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;

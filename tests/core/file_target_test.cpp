@@ -1,0 +1,58 @@
+// What writing a file may replace.
+#include "depthgrid/core/file_target.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class ReplaceableFile : public ::testing::Test {
+ protected:
+  ReplaceableFile() : folder_(fs::temp_directory_path() / ("depthgrid-target-" + std::to_string(::getpid()))) {
+    fs::create_directory(folder_);
+  }
+  ~ReplaceableFile() override { fs::remove_all(folder_); }
+
+  static std::string message(const fs::path& path) {
+    try {
+      return "no error: " + replaceable_file(path).string();
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+  fs::path folder_;
+};
+
+TEST_F(ReplaceableFile, AbsentAndRegularFilesAreThemselves) {
+  EXPECT_EQ(replaceable_file(folder_ / "new"), folder_ / "new");
+  std::ofstream(folder_ / "old") << "x";
+  EXPECT_EQ(replaceable_file(folder_ / "old"), folder_ / "old");
+}
+
+TEST_F(ReplaceableFile, ALinkStandsForItsTarget) {
+  std::ofstream(folder_ / "target") << "x";
+  fs::create_symlink("target", folder_ / "link");
+  EXPECT_EQ(replaceable_file(folder_ / "link"), fs::canonical(folder_ / "target"));
+}
+
+TEST_F(ReplaceableFile, PipesDevicesAndFoldersStay) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(message(folder_ / "pipe"), HasSubstr("pipe: exists and is not a regular file, will not be replaced"));
+  fs::create_symlink("pipe", folder_ / "link");
+  EXPECT_THAT(message(folder_ / "link"), HasSubstr("link: exists and is not a regular file"));
+  EXPECT_THAT(message("/dev/null"), HasSubstr("/dev/null: exists and is not a regular file"));
+  EXPECT_THAT(message(folder_), HasSubstr("is not a regular file"));
+}
+
+}  // namespace
+}  // namespace depthgrid
