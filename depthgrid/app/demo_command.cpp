@@ -48,6 +48,7 @@ std::vector<Proximity> evaluate(const simulation::DemoScene& demo, std::span<con
   std::vector<grid::Evaluation> evaluations(demo.control_points_world.size());
   evaluator.evaluate(demo.control_points_world, evaluations);
   std::vector<Proximity> answers;
+  answers.reserve(evaluations.size());
   for (const grid::Evaluation& evaluation : evaluations) {
     answers.push_back(evaluation.nearest);
   }

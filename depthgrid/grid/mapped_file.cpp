@@ -87,10 +87,10 @@ MappedFile::~MappedFile() {
   ::munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
 }
 
-void write_file_whole(const std::string& name, std::span<const std::span<const std::byte>> parts) {
-  const std::string path = replaceable_file(name).string();
+void write_file_whole(const std::string& path, std::span<const std::span<const std::byte>> parts) {
+  const std::string target = replaceable_file(path).string();
   static std::atomic<unsigned> serial{0};
-  const std::string temporary = path + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
+  const std::string temporary = target + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the system's own interface
   Descriptor descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   if (!descriptor.valid()) {
@@ -99,7 +99,7 @@ void write_file_whole(const std::string& name, std::span<const std::span<const s
   const bool written = std::all_of(parts.begin(), parts.end(),
                                    [&](std::span<const std::byte> part) { return write_all(descriptor.get(), part); });
   if (!written || ::fsync(descriptor.get()) != 0 || !descriptor.close() ||
-      std::rename(temporary.c_str(), path.c_str()) != 0) {
+      std::rename(temporary.c_str(), target.c_str()) != 0) {
     const int code = errno;
     ::unlink(temporary.c_str());
     errno = code;

@@ -1,9 +1,11 @@
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <csetjmp>
 #include <cstdio>
+#include <cstring>
 #include <string>
 
 #include "depthgrid/core/camera.hpp"
@@ -40,7 +42,10 @@ struct Writer {
 
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
   auto* writer = static_cast<Writer*>(png_get_error_ptr(png));
-  static_cast<void>(std::snprintf(writer->message.data(), writer->message.size(), "%s", message));
+  // Into a fixed buffer: nothing may be constructed across the jump.
+  const std::size_t length = std::min(std::strlen(message), writer->message.size() - 1);
+  std::copy_n(message, length, writer->message.begin());
+  writer->message[length] = '\0';
   png_longjmp(png, 1);
 }
 
