@@ -1,0 +1,86 @@
+// One camera's newest image, prepared for the search: free depths and their minimum pyramid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "depthgrid/core/depth_image.hpp"
+#include "depthgrid/core/frame.hpp"
+#include "depthgrid/core/pose.hpp"
+#include "depthgrid/search/settings.hpp"
+
+namespace depthgrid::search {
+
+/// Overlapping extrema of an image: texel (i, j) of level L >= 1 covers the pixels [i 2^L, (i + 2) 2^L) x
+/// [j 2^L, (j + 2) 2^L) of the image, so that any rectangle of pixels whose last and first columns (and rows) differ by
+/// at most 2^L is covered by the one texel (first >> L). Level 0 is the image itself.
+struct PyramidLevel {
+  std::uint32_t offset = 0;  ///< of its first texel in the pyramid's buffer; unused at level 0
+  std::int32_t width = 0;
+  std::int32_t height = 0;
+};
+
+/// The levels of an image of this size, level 0 first; the last one is the first whose 2^L reaches both sides.
+/// `total` becomes the number of texels of all levels from 1 on.
+[[nodiscard]] std::vector<PyramidLevel> pyramid_levels(int width_px, int height_px, std::size_t& total);
+
+/// A prepared image. Buffers are allocated by the constructor; update() does not allocate. Written by one thread,
+/// read by many once it is published.
+class View {
+ public:
+  View(const RigCamera& camera, const CameraMargins& margins, const Policies& policies);
+
+  /// Takes a frame: normalises, subtracts the margin, applies the robot, the minimum filter and builds the pyramid.
+  /// False when the frame is unusable (no data, another size or depth scale than the camera's, rows that overlap, half a
+  /// robot view); then nothing is free.
+  bool update(const Frame& frame, const Pose& T_world_camera) noexcept;
+
+  [[nodiscard]] int width_px() const noexcept { return free_m_.width_px(); }
+  [[nodiscard]] int height_px() const noexcept { return free_m_.height_px(); }
+  [[nodiscard]] bool present() const noexcept { return present_; }
+  [[nodiscard]] double time_s() const noexcept { return time_s_; }
+  [[nodiscard]] const Pose& T_world_camera() const noexcept { return T_world_camera_; }
+
+  /// Measured depth, 0 = no measurement.
+  [[nodiscard]] const DepthImage& measured_m() const noexcept { return measured_m_; }
+  /// A pixel's frustum is free between the blind zone and this depth: g, and where the pixel's robot interval
+  /// [near, far] begins at or before g and ends behind it, that far end (what lies in the interval is the robot).
+  [[nodiscard]] const DepthImage& free_m() const noexcept { return free_m_; }
+  /// Minima of free_m(), levels from 1 on.
+  [[nodiscard]] const float* minima_m() const noexcept { return minima_m_.data(); }
+  [[nodiscard]] const std::vector<PyramidLevel>& levels() const noexcept { return levels_; }
+
+  /// True when some pixel has a robot interval beyond its free depth (something stands before the robot, or nothing was
+  /// measured there): an island that is not an obstacle to this camera. Else the island images are not up to date.
+  [[nodiscard]] bool has_islands() const noexcept { return has_islands_; }
+  /// Per pixel [near, far] of the island; (+inf, -inf) where there is none.
+  [[nodiscard]] const DepthImage& island_near_m() const noexcept { return island_near_m_; }
+  [[nodiscard]] const DepthImage& island_far_m() const noexcept { return island_far_m_; }
+  /// Maxima of island_near_m() and minima of island_far_m(), levels from 1 on.
+  [[nodiscard]] const float* island_near_maxima_m() const noexcept { return island_near_maxima_m_.data(); }
+  [[nodiscard]] const float* island_far_minima_m() const noexcept { return island_far_minima_m_.data(); }
+
+ private:
+  [[nodiscard]] bool is_usable(const Frame& frame) const noexcept;
+  void clear() noexcept;
+  void join_robot(const RobotView& robot) noexcept;
+
+  MeasurementRule rule_;
+  double metres_per_unit_;
+  double pocket_m_;
+  DepthImage measured_m_;
+  FreeDepth free_;
+  DepthImage free_m_;
+  std::vector<PyramidLevel> levels_;
+  std::vector<float> minima_m_;
+  bool has_islands_ = false;
+  DepthImage island_near_m_, island_far_m_;
+  std::vector<float> island_near_maxima_m_, island_far_minima_m_;
+  std::vector<float> pocket_intervals_m_;
+  Pose T_world_camera_ = Pose::Identity();
+  double time_s_ = 0;
+  bool present_ = false;
+};
+
+}  // namespace depthgrid::search
