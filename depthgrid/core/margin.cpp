@@ -106,6 +106,14 @@ void validate(const PoseMargin& margin, const char* name) {
   check_part(name, "time", margin.time_m, " m");
 }
 
+void validate(const CameraMargins& margins, const char* name) {
+  validate(margins.sensor, name);
+  check_part(name, "translation", margins.translation_m, " m");
+  check_part(name, "rotation", margins.rotation_rad, " rad");
+  check_part(name, "half exposure", margins.half_exposure_s, " s");
+  check_part(name, "time uncertainty", margins.time_uncertainty_s, " s");
+}
+
 FreeDepth::FreeDepth(int width_px, int height_px, const SensorMargin& margin)
     : margin_(margin),
       reduced_m_(width_px, height_px),

@@ -24,9 +24,19 @@ struct PoseMargin {
   double time_m = 0.0;
 };
 
+/// What is known of the errors of one camera and its clock. Together with the fastest obstacle this gives a PoseMargin.
+struct CameraMargins {
+  SensorMargin sensor;            ///< m_k and w_k
+  double translation_m = 0;       ///< calibration: the camera's position
+  double rotation_rad = 0;        ///< calibration: the camera's orientation
+  double half_exposure_s = 0;     ///< half the time in which one image is taken
+  double time_uncertainty_s = 0;  ///< error of the time stamp
+};
+
 /// Throws Error unless all parts are finite and not negative and lateral_px is in [0, 16].
 void validate(const SensorMargin& margin, const char* name = "sensor margin");
 void validate(const PoseMargin& margin, const char* name = "pose margin");
+void validate(const CameraMargins& margins, const char* name = "camera margins");
 
 /// m(D) for a measured depth, metres.
 [[nodiscard]] inline double depth_margin_m(const SensorMargin& margin, double depth_m) noexcept {

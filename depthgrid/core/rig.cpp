@@ -4,6 +4,7 @@
 #include <set>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/sensor_models.hpp"
 
 namespace depthgrid {
 namespace {
@@ -14,6 +15,17 @@ void check_pose(const Pose& pose, const std::string& name) {
   if (!(largest <= kLargestTranslation)) {
     fail(name, ": translation reaches ", largest, " m, must be at most ", kLargestTranslation,
          "; move the world's origin near the cameras");
+  }
+}
+
+void check_sensor(const RigCamera& camera, const std::string& name) {
+  try {
+    (void)sensor_model(camera.sensor);
+  } catch (const Error& error) {
+    fail(name, ": ", error.what());
+  }
+  if (!camera.margins) {
+    fail(name, ": has the sensor model '", camera.sensor, "' but no margins; take those of sensor_margins()");
   }
 }
 
@@ -41,6 +53,12 @@ void validate(const Rig& rig) {
       fail(name, ": metres_per_unit is ", camera.metres_per_unit, ", must be a positive finite number");
     }
     check_pose(camera.T_world_camera, name + ": T_world_camera");
+    if (camera.margins) {
+      validate(*camera.margins, name.c_str());
+    }
+    if (!camera.sensor.empty()) {
+      check_sensor(camera, name);
+    }
   }
 }
 

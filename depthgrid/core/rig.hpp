@@ -8,6 +8,7 @@
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/distortion.hpp"
+#include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/pose.hpp"
 
 namespace depthgrid {
@@ -20,6 +21,8 @@ struct RigCamera {
   double metres_per_unit = 0.001;  ///< of 16-bit depth images
   MeasurementRule rule;
   Pose T_world_camera = Pose::Identity();
+  std::string sensor;                      ///< the built-in sensor model that `margins` started from; empty: none
+  std::optional<CameraMargins> margins{};  ///< none: nothing was said about the camera's errors
 };
 
 /// Cameras with distinct ids. T_floor_world maps world to a frame with z up and z = 0 on the floor.
@@ -33,8 +36,9 @@ struct Rig {
 /// Move the world's origin near the cameras instead.
 inline constexpr double kLargestTranslation = 1e5;
 
-/// Throws Error unless there is at least one camera, ids are non-empty and distinct, every camera is valid, and poses
-/// are rotations (to kRotationTolerance) with translations of at most kLargestTranslation.
+/// Throws Error unless there is at least one camera, ids are non-empty and distinct, every camera is valid (a sensor
+/// model needs margins, too), and poses are rotations (to kRotationTolerance) with translations of at most
+/// kLargestTranslation.
 void validate(const Rig& rig);
 
 /// Index of the camera called `id`. Throws Error that lists the ids there are.

@@ -217,6 +217,17 @@ TEST(BrokenMargin, NamesValueAndRule) {
             "camera 'left': rotation is inf rad, must be a finite number that is not negative");
   EXPECT_EQ(message(PoseMargin{0, 0, kNaN}),
             "camera 'left': time is nan m, must be a finite number that is not negative");
+  EXPECT_EQ(message(CameraMargins{}), "");
+  EXPECT_EQ(message(CameraMargins{{0, 0, 0, 17}, 0, 0, 0, 0}),
+            "camera 'left': lateral reach is 17 px, must be between 0 and 16");
+  EXPECT_EQ(message(CameraMargins{{}, -1, 0, 0, 0}),
+            "camera 'left': translation is -1 m, must be a finite number that is not negative");
+  EXPECT_EQ(message(CameraMargins{{}, 0, kNaN, 0, 0}),
+            "camera 'left': rotation is nan rad, must be a finite number that is not negative");
+  EXPECT_EQ(message(CameraMargins{{}, 0, 0, -0.1, 0}),
+            "camera 'left': half exposure is -0.1 s, must be a finite number that is not negative");
+  EXPECT_EQ(message(CameraMargins{{}, 0, 0, 0, kInf}),
+            "camera 'left': time uncertainty is inf s, must be a finite number that is not negative");
   EXPECT_EQ(test::thrown_message([] {
               FreeDepth(4, 3, {0, 0, 0, 17});
             }),
