@@ -148,16 +148,20 @@ std::vector<Eigen::Vector3d> random_workload_points(double time_s, std::size_t c
 }
 
 Workload::Workload(int cameras, int frame_sets, const std::function<void(int, int)>& progress)
-    : rig_(workload_rig(cameras)), frame_sets_(frame_sets) {
+    : Workload(workload_rig(cameras), frame_sets, kWorkloadRobotPadding, progress) {}
+
+Workload::Workload(const Rig& rig, int frame_sets, double robot_padding_m,
+                   const std::function<void(int, int)>& progress)
+    : rig_(rig), frame_sets_(frame_sets) {
   if (frame_sets < 1) {
     fail("workload: ", frame_sets, " frame sets, must be at least 1");
   }
-  const int total = cameras * frame_sets;
+  const int total = static_cast<int>(rig.cameras.size()) * frame_sets;
   images_.reserve(static_cast<std::size_t>(total));
   for (int set = 0; set < frame_sets; ++set) {
     const Scene scene = workload_scene(time_s(set));
     for (const RigCamera& camera : rig_.cameras) {
-      simulation::View view = scene.render(camera.intrinsics, camera.T_world_camera, kWorkloadRobotPadding);
+      simulation::View view = scene.render(camera.intrinsics, camera.T_world_camera, robot_padding_m);
       const std::size_t pixels =
           static_cast<std::size_t>(camera.intrinsics.width_px) * static_cast<std::size_t>(camera.intrinsics.height_px);
       Images images{std::vector<std::uint16_t>(pixels), std::move(view.robot_near_m), std::move(view.robot_far_m)};

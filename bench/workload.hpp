@@ -47,6 +47,8 @@ class Workload {
   /// `progress(done, total)` is called after every image. Throws Error unless 1 <= cameras <= 8 and frame_sets >= 1.
   explicit Workload(int cameras = kWorkloadCameras, int frame_sets = kWorkloadFrameSets,
                     const std::function<void(int, int)>& progress = {});
+  /// The same scene with another rig (another size of images, fewer cameras) or another padding of the robot.
+  Workload(const Rig& rig, int frame_sets, double robot_padding_m, const std::function<void(int, int)>& progress = {});
 
   [[nodiscard]] const Rig& rig() const noexcept { return rig_; }
   [[nodiscard]] int frame_sets() const noexcept { return frame_sets_; }

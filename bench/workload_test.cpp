@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "bench/workload_noise.hpp"
 #include "depthgrid/core/error.hpp"
 
 namespace depthgrid::bench {
@@ -83,6 +85,50 @@ TEST(Workload, RandomPointsRepeatBySeed) {
   ASSERT_EQ(a.size(), 9U);
   EXPECT_EQ(a, b);
   EXPECT_NE(a, c);
+}
+
+TEST(Workload, NoiseStaysWithinItsMarginAndLeavesTheRobotRecognised) {
+  const Workload clean(workload_rig(2), 2, kNoisyRobotPadding);
+  const NoisyWorkload noisy(clean);
+  const SensorMargin margin = noise_margin();
+  double pixels = 0;
+  double invalid = 0;
+  double robot = 0;
+  double lost = 0;
+  double squares = 0;
+  for (int set = 0; set < 2; ++set) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Frame& exact = clean.frames(set)[k];
+      const Frame& frame = noisy.frames(set)[k];
+      for (int v = 0; v < 480; ++v) {
+        for (int u = 0; u < 640; ++u) {
+          const double z_m = *measured_depth_m(exact.depth, {}, u, v);
+          const auto depth_m = measured_depth_m(frame.depth, {}, u, v);
+          ++pixels;
+          if (!depth_m) {
+            ++invalid;
+            continue;
+          }
+          const double bound_m = *depth_m - depth_margin_m(margin, *depth_m);
+          ASSERT_LE(bound_m, z_m) << "camera " << k << ", pixel " << u << " " << v;
+          const double deviation = (*depth_m - z_m) / (0.0005 + 0.0015 * z_m * z_m);
+          squares += deviation * deviation;
+          const double near_m = frame.robot.near_m[v * frame.robot.stride_px + u];
+          const double far_m = frame.robot.far_m[v * frame.robot.stride_px + u];
+          if (near_m > 0 && near_m <= z_m - kNoisyRobotPadding / 2 && z_m + kNoisyRobotPadding / 2 <= far_m) {
+            ++robot;
+            lost += near_m <= bound_m && *depth_m <= far_m ? 0 : 1;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_NEAR(invalid / pixels, 0.01, 0.001);
+  // Cut-off normal noise (0.98) and a uniform quantisation of +- 0.9 standard deviations together.
+  EXPECT_NEAR(std::sqrt(squares / pixels), 1.1, 0.1);
+  EXPECT_GT(robot, 1000);
+  EXPECT_LT(lost / robot, 0.05);
+  EXPECT_NE(noisy.frames(0)[0].depth.data, noisy.frames(0)[1].depth.data);
 }
 
 TEST(Workload, ImpossibleSizesAreRefused) {
