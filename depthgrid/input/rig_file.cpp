@@ -3,12 +3,14 @@
 #include <rapidjson/document.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/input/depth_file_pattern.hpp"
 #include "depthgrid/input/json_check.hpp"
+#include "depthgrid/input/rig_margins.hpp"
 #include "depthgrid/input/text_file.hpp"
 
 namespace depthgrid::input {
@@ -72,13 +74,15 @@ struct Defaults {
   const Value* invalid_values = nullptr;
 };
 
-MeasurementRule rule_of(const Value& value, const Defaults& defaults) {
-  MeasurementRule rule;
+/// What the sensor model says holds where the file itself says nothing.
+MeasurementRule rule_of(const Value& value, const Defaults& defaults, const SensorModel* sensor) {
+  MeasurementRule rule = sensor != nullptr ? sensor->rule : MeasurementRule{};
   if (const Value* near_m = find(value, "near_m")) {
     rule.near_m = near_m->GetDouble();
   }
   if (const Value* far_m = find(value, "far_m")) {
-    rule.far_m = far_m->GetDouble();
+    rule.far_m = far_m->IsNull() ? std::numeric_limits<double>::infinity() : far_m->GetDouble();
+    rule.clamp_beyond_far = false;  // that was the model's opinion of its own limit
   }
   if (const Value* clamp = find(value, "clamp_beyond_far")) {
     rule.clamp_beyond_far = clamp->GetBool();
@@ -107,7 +111,10 @@ RigCamera camera_of(const Value& value, const Defaults& defaults, const std::str
     fail(name, ": ", place, ": metres_per_unit is given neither here nor in /depth, depth values need a scale");
   }
   camera.metres_per_unit = scale->GetDouble();
-  camera.rule = at_place(name, place, [&] { return rule_of(value, defaults); });
+  const SensorModel* sensor = at_place(name, place + "/sensor", [&] { return sensor_of(value); });
+  camera.sensor = sensor != nullptr ? sensor->name : std::string_view();
+  camera.margins = at_place(name, place + "/margins", [&] { return margins_of(value, sensor, camera); });
+  camera.rule = at_place(name, place, [&] { return rule_of(value, defaults, sensor); });
   camera.T_world_camera = at_place(name, place + "/T_world_cam", [&] { return pose_of(value["T_world_cam"]); });
   return camera;
 }

@@ -32,6 +32,7 @@ class Output {
   void begin_array() { check(json_.StartArray()); }
   void end_array() { check(json_.EndArray()); }
   void key(const char* name) { check(json_.Key(name)); }
+  void null() { check(json_.Null()); }
   void value(double number) { check(json_.Double(number)); }
   void value(int number) { check(json_.Int(number)); }
   void value(bool truth) { check(json_.Bool(truth)); }
@@ -90,22 +91,40 @@ void write_distortion(Output& out, const Distortion& distortion) {
   out.end_object();
 }
 
-void write_rule(Output& out, const MeasurementRule& rule) {
+/// With a sensor everything is said, because what is left out would be the sensor's.
+void write_rule(Output& out, const MeasurementRule& rule, bool has_sensor) {
   out.key("invalid_values");
   out.begin_array();
   for (const std::uint16_t unit : rule.invalid_units) {
     out.value(static_cast<int>(unit));
   }
   out.end_array();
-  if (rule.near_m != 0) {
+  if (rule.near_m != 0 || has_sensor) {
     out.member("near_m", rule.near_m);
   }
   if (!(std::isinf(rule.far_m) && rule.far_m > 0)) {
     out.member("far_m", rule.far_m);
+  } else if (has_sensor) {
+    out.key("far_m");
+    out.null();
   }
-  if (rule.clamp_beyond_far) {
-    out.member("clamp_beyond_far", true);
+  if (rule.clamp_beyond_far || has_sensor) {
+    out.member("clamp_beyond_far", rule.clamp_beyond_far);
   }
+}
+
+void write_margins(Output& out, const CameraMargins& margins) {
+  out.key("margins");
+  out.begin_object();
+  out.member("noise_constant_m", margins.sensor.constant_m);
+  out.member("noise_linear", margins.sensor.linear);
+  out.member("noise_quadratic_per_m", margins.sensor.quadratic_per_m);
+  out.member("lateral_px", margins.sensor.lateral_px);
+  out.member("translation_m", margins.translation_m);
+  out.member("rotation_rad", margins.rotation_rad);
+  out.member("half_exposure_s", margins.half_exposure_s);
+  out.member("time_uncertainty_s", margins.time_uncertainty_s);
+  out.end_object();
 }
 
 void write_camera(Output& out, const RigCamera& camera, const std::string& depth_files) {
@@ -120,7 +139,13 @@ void write_camera(Output& out, const RigCamera& camera, const std::string& depth
   out.member("cy", principal_point.y());
   write_distortion(out, camera.distortion);
   out.member("metres_per_unit", camera.metres_per_unit);
-  write_rule(out, camera.rule);
+  write_rule(out, camera.rule, !camera.sensor.empty());
+  if (!camera.sensor.empty()) {
+    out.member("sensor", camera.sensor);
+  }
+  if (camera.margins) {
+    write_margins(out, *camera.margins);
+  }
   write_pose(out, "T_world_cam", camera.T_world_camera);
   if (!depth_files.empty()) {
     out.member("depth_files", depth_files);

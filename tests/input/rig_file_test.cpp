@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <limits>
 #include <random>
 
+#include "depthgrid/core/sensor_models.hpp"
 #include "input/rig_text.hpp"
 #include "input/temporary_folder.hpp"
 
@@ -67,6 +69,70 @@ TEST(RigFile, SlightlyWrongRotationIsMadeOrthonormal) {
   EXPECT_EQ(file.rig.cameras[0].T_world_camera.translation().x(), 0.5);
 }
 
+TEST(RigFile, SensorGivesMarginsAndRangeWhereTheFileSaysNothing) {
+  const RigFile file =
+      parse_rig(small_rig_with("\"id\": \"left\",", "\"id\": \"left\", \"sensor\": \"kinect-v1\","), "rig");
+  const RigCamera& left = file.rig.cameras[0];
+  EXPECT_EQ(left.sensor, "kinect_v1");
+  ASSERT_TRUE(left.margins.has_value());
+  EXPECT_EQ(left.margins->sensor.quadratic_per_m, 0.00633);
+  EXPECT_EQ(left.margins->sensor.lateral_px, 2);
+  EXPECT_EQ(left.margins->translation_m, 0.0);
+  EXPECT_EQ(left.rule.near_m, 0.5);
+  EXPECT_EQ(left.rule.far_m, 5.0);
+  EXPECT_TRUE(left.rule.clamp_beyond_far);
+  EXPECT_EQ(left.rule.invalid_units, (std::vector<std::uint16_t>{0, 2047})) << "the file's own";
+  EXPECT_FALSE(file.rig.cameras[1].margins.has_value());
+  EXPECT_EQ(file.rig.cameras[1].sensor, "");
+}
+
+TEST(RigFile, SensorsMarginsFollowTheCalibration) {
+  const RigFile file =
+      parse_rig(small_rig_with("\"id\": \"right\",", "\"id\": \"right\", \"sensor\": \"realsense_d435\","), "rig");
+  const SensorMargin& margin = file.rig.cameras[1].margins->sensor;
+  EXPECT_DOUBLE_EQ(margin.quadratic_per_m, (3 * 0.08 + 0.5 / 32) / (10 * 0.05));
+  EXPECT_EQ(margin.constant_m, 0.00025) << "half of the camera's own unit";
+}
+
+TEST(RigFile, OwnNumbersStandInPlaceOfTheSensors) {
+  const RigFile file = parse_rig(
+      small_rig_with("\"id\": \"left\",",
+                     R"("id": "left", "sensor": "kinect_v1", "near_m": 0, "far_m": null, "clamp_beyond_far": false,
+             "margins": {"noise_constant_m": 0.01, "noise_linear": 0.02, "noise_quadratic_per_m": 0.03, "lateral_px": 0,
+             "translation_m": 0.04, "rotation_rad": 0.05, "half_exposure_s": 0.06, "time_uncertainty_s": 0.07, "note": "a"},)"),
+      "rig");
+  const RigCamera& left = file.rig.cameras[0];
+  EXPECT_EQ(left.margins->sensor.constant_m, 0.01);
+  EXPECT_EQ(left.margins->sensor.linear, 0.02);
+  EXPECT_EQ(left.margins->sensor.quadratic_per_m, 0.03);
+  EXPECT_EQ(left.margins->sensor.lateral_px, 0);
+  EXPECT_EQ(left.margins->translation_m, 0.04);
+  EXPECT_EQ(left.margins->rotation_rad, 0.05);
+  EXPECT_EQ(left.margins->half_exposure_s, 0.06);
+  EXPECT_EQ(left.margins->time_uncertainty_s, 0.07);
+  EXPECT_EQ(left.rule.near_m, 0.0);
+  EXPECT_EQ(left.rule.far_m, std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(left.rule.clamp_beyond_far);
+}
+
+TEST(RigFile, AnOwnFarEndIsNotClampedBecauseTheSensorsIs) {
+  const RigFile file = parse_rig(
+      small_rig_with("\"id\": \"left\",", "\"id\": \"left\", \"sensor\": \"kinect_v1\", \"far_m\": 4,"), "rig");
+  EXPECT_EQ(file.rig.cameras[0].rule.far_m, 4.0);
+  EXPECT_FALSE(file.rig.cameras[0].rule.clamp_beyond_far);
+}
+
+TEST(RigFile, MarginsWithoutSensorStartFromZero) {
+  const RigFile file = parse_rig(
+      small_rig_with("\"id\": \"left\",", R"("id": "left", "margins": {"noise_quadratic_per_m": 0.003},)"), "rig");
+  const CameraMargins& margins = *file.rig.cameras[0].margins;
+  EXPECT_EQ(margins.sensor.quadratic_per_m, 0.003);
+  EXPECT_EQ(margins.sensor.constant_m, 0.0);
+  EXPECT_EQ(margins.sensor.lateral_px, 1);
+  EXPECT_EQ(margins.half_exposure_s, 0.0);
+  EXPECT_EQ(file.rig.cameras[0].rule.far_m, std::numeric_limits<double>::infinity());
+}
+
 TEST(RigFile, LeavesOutWhatMayBeLeftOut) {
   const RigFile file = parse_rig(
       R"({"cameras": [{"id": "a", "width": 4, "height": 3, "fx": 5, "fy": 5, "cx": 0e9, "cy": 1, "metres_per_unit": 1e-3,
@@ -98,6 +164,17 @@ TEST(RigFile, FrameNumbersAreFilledIn) {
   EXPECT_EQ(depth_file_name("still.png", 42), "still.png");
 }
 
+void expect_same(const CameraMargins& a, const CameraMargins& b) {
+  EXPECT_EQ(a.sensor.constant_m, b.sensor.constant_m);
+  EXPECT_EQ(a.sensor.linear, b.sensor.linear);
+  EXPECT_EQ(a.sensor.quadratic_per_m, b.sensor.quadratic_per_m);
+  EXPECT_EQ(a.sensor.lateral_px, b.sensor.lateral_px);
+  EXPECT_EQ(a.translation_m, b.translation_m);
+  EXPECT_EQ(a.rotation_rad, b.rotation_rad);
+  EXPECT_EQ(a.half_exposure_s, b.half_exposure_s);
+  EXPECT_EQ(a.time_uncertainty_s, b.time_uncertainty_s);
+}
+
 void expect_same(const RigFile& a, const RigFile& b) {
   EXPECT_EQ(a.rig.name, b.rig.name);
   EXPECT_EQ(a.depth_files, b.depth_files);
@@ -127,6 +204,11 @@ void expect_same(const RigFile& a, const RigFile& b) {
     EXPECT_EQ(x.rule.far_m, y.rule.far_m);
     EXPECT_EQ(x.rule.clamp_beyond_far, y.rule.clamp_beyond_far);
     EXPECT_EQ(x.rule.invalid_units, y.rule.invalid_units);
+    EXPECT_EQ(x.sensor, y.sensor);
+    ASSERT_EQ(x.margins.has_value(), y.margins.has_value());
+    if (x.margins) {
+      expect_same(*x.margins, *y.margins);
+    }
     EXPECT_TRUE(x.T_world_camera.isApprox(y.T_world_camera, 1e-12));
   }
 }
@@ -152,6 +234,14 @@ RigFile random_rig(unsigned seed) {
     }
     camera.metres_per_unit = 0.001 + 1e-4 * number(random);
     camera.rule = {0.25 + 0.1 * number(random), 5 + number(random), random() % 2 == 0, {0, 2047}};
+    if (random() % 2 == 0) {  // whatever the sensor says of itself, the rig's own values are the ones that come back
+      camera.rule = random() % 2 == 0 ? MeasurementRule{} : camera.rule;
+      const auto part = [&] { return std::abs(number(random)); };
+      camera.margins =
+          CameraMargins{{part(), part(), part(), static_cast<int>(random() % 17)}, part(), part(), part(), part()};
+      const auto models = sensor_models();
+      camera.sensor = random() % 2 == 0 ? models[random() % models.size()].name : std::string_view();
+    }
     camera.T_world_camera = look_at({number(random), number(random), 2}, {number(random), 0, 0});
     file.rig.cameras.push_back(camera);
     file.depth_files.push_back("c" + std::to_string(k) + "/%05d.png");
@@ -212,6 +302,7 @@ TEST(RigFile, ExampleOfTheDocumentsLoads) {
   const std::size_t end = page.find("```", begin + 8);
   const RigFile file = parse_rig(page.substr(begin + 8, end - begin - 8), "docs/rig-file.md");
   EXPECT_EQ(file.rig.cameras.size(), 2U);
+  EXPECT_EQ(file.rig.cameras[0].margins->translation_m, 0.005);
   EXPECT_EQ(depth_file_name(file.depth_files[1], file.first_frame), "right/depth_0000.png");
 }
 
