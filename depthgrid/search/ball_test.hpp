@@ -1,0 +1,16 @@
+// Exact: does a ball meet what one camera has not seen free?
+#pragma once
+
+#include <Eigen/Core>
+
+#include "depthgrid/search/local_camera.hpp"
+
+namespace depthgrid::search {
+
+/// True when the closed ball of radius_m around p_camera meets the camera's not-free set less the robot's islands,
+/// within `clip`: everything outside the view (unless clip.to_view), the blind zone, and each pixel's frustum from its
+/// free depth on. Exact in double precision up to about 1e-9 m, on the side of `true`.
+[[nodiscard]] bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Vector3d& p_camera,
+                                  double radius_m) noexcept;
+
+}  // namespace depthgrid::search

@@ -1,0 +1,81 @@
+#include "depthgrid/search/local_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace depthgrid::search {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = 0x1p-24;  ///< half an ulp of 1 in single precision
+
+float up(double value) noexcept {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+
+float down(double value) noexcept { return -up(-value); }
+
+Clip view_between(double d_min_m, double d_max_m) noexcept {
+  return {true, d_min_m, d_max_m, std::max(down(d_min_m), 1e-6F), up(d_max_m)};
+}
+
+}  // namespace
+
+void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world, double extent_m,
+                LocalCamera& local) noexcept {
+  const View& view = snapshot.view(camera);
+  const RigCamera& rig_camera = snapshot.camera(camera);
+  const Pose& T_world_camera = view.T_world_camera();
+  local.view = &view;
+  local.pinhole = rig_camera.intrinsics;
+  local.near_m = rig_camera.rule.near_m;
+  local.pose_margin = snapshot.pose_margin(camera);
+  local.R_camera_world = T_world_camera.linear().transpose();
+  local.offset_camera_m = local.R_camera_world * (origin_world - T_world_camera.translation());
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      local.rotation[3 * row + column] = static_cast<float>(local.R_camera_world(row, column));
+      local.absolute_rotation[3 * row + column] = up(std::abs(local.R_camera_world(row, column)));
+    }
+    local.offset_m[row] = static_cast<float>(local.offset_camera_m(row));
+  }
+  // Ten roundings at most, each of at most half an ulp of the largest intermediate value.
+  const double largest_m = local.offset_camera_m.cwiseAbs().maxCoeff() + 3 * extent_m;
+  local.guard_m = up(16 * kEpsilon * largest_m);
+  const PinholeCamera& pinhole = local.pinhole;
+  // A coordinate inside the image is f x / z + c with |f x / z| <= size + |c|.
+  local.guard_px = up(16 * kEpsilon * (pinhole.width_px + pinhole.height_px + 2 * std::abs(pinhole.cx_px) +
+                                       2 * std::abs(pinhole.cy_px)));
+  local.fx = static_cast<float>(pinhole.fx_px);
+  local.fy = static_cast<float>(pinhole.fy_px);
+  local.cx = static_cast<float>(pinhole.cx_px);
+  local.cy = static_cast<float>(pinhole.cy_px);
+  local.width = static_cast<float>(pinhole.width_px);
+  local.height = static_cast<float>(pinhole.height_px);
+  local.blind_m = local.near_m > 0 ? up(local.near_m) : 0.0F;
+  local.has_reach = local.pose_margin.translation_m > 0 || local.pose_margin.rotation_rad > 0 ||
+                    local.pose_margin.time_m > 0;
+  local.reach_m = up(local.pose_margin.translation_m + local.pose_margin.time_m);
+  local.reach_per_m = up(local.pose_margin.rotation_rad);
+  if (!local.has_reach) {
+    local.reach_m = 0;
+    local.reach_per_m = 0;
+  }
+  local.free_m = view.free_m().data();
+  local.minima_m = view.minima_m();
+  local.levels = view.levels().data();
+  local.level_count = static_cast<int>(view.levels().size());
+  local.width_px = view.width_px();
+  local.has_islands = view.has_islands();
+  const auto* frustum = std::get_if<FrustumSpace>(&snapshot.settings().space);
+  const bool is_principal = frustum != nullptr && frustum->principal == camera;
+  local.space = is_principal && !local.has_reach ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};
+  // Covered is what lies beyond the blind zone, its end excluded.
+  constexpr double kBeyondM = 1e-9;
+  local.coverage = view_between(std::max(local.near_m + kBeyondM, is_principal ? frustum->d_min_m : 0.0),
+                                is_principal ? frustum->d_max_m : kInfinity);
+  local.coverage.low_m = std::max(local.coverage.low_m, std::nextafter(local.blind_m, 1e30F));
+}
+
+}  // namespace depthgrid::search

@@ -1,0 +1,67 @@
+// One camera as one query sees it: relative to the query's origin, in the precision that each test needs.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/search/view_store.hpp"
+
+namespace depthgrid::search {
+
+/// What of space counts when a camera is asked whether it frees a set.
+struct Clip {
+  bool to_view = false;  ///< outside the image nothing counts; with it the depths below apply
+  double d_min_m = 0;    ///< what is nearer does not count
+  double d_max_m = 0;    ///< what is farther does not count
+  float low_m = 0;       ///< d_min_m rounded down, but a little above 0
+  float high_m = 0;      ///< d_max_m rounded up
+};
+
+struct LocalCamera {
+  // Single precision: what the cube test reads. x_camera = rotation x_local + offset.
+  float rotation[9];
+  float absolute_rotation[9];
+  float offset_m[3];
+  float guard_m;   ///< more than the rounding of x_camera for any cube of the query
+  float guard_px;  ///< more than the rounding of a projection inside the image
+  float fx, fy, cx, cy;
+  float width, height;
+  float blind_m;       ///< nothing up to this depth is free (a little above the blind zone's end)
+  float reach_m;       ///< e at the camera's centre
+  float reach_per_m;   ///< growth of e with the range
+  const float* free_m = nullptr;
+  const float* minima_m = nullptr;
+  const PyramidLevel* levels = nullptr;
+  int level_count = 0;
+  int width_px = 0;
+  bool has_reach = false;
+  bool has_islands = false;
+  /// What counts at all: the view between two depths where that is W. Only without reach: with it a point near the
+  /// border of the view is not free, whatever counts beyond the border.
+  Clip space;
+  /// What the camera covers, as far as it counts.
+  Clip coverage;
+
+  // Double precision: what the exact tests read.
+  Eigen::Matrix3d R_camera_world;
+  Eigen::Vector3d offset_camera_m;  ///< the query's origin in the camera frame
+  PinholeCamera pinhole;
+  double near_m = 0;
+  PoseMargin pose_margin;
+  const View* view = nullptr;
+
+  [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& x_local) const noexcept {
+    return R_camera_world * x_local + offset_camera_m;
+  }
+  /// e at a point, metres.
+  [[nodiscard]] double reach(const Eigen::Vector3d& x_camera) const noexcept {
+    return pose_margin.translation_m + pose_margin.time_m + pose_margin.rotation_rad * x_camera.norm();
+  }
+};
+
+/// Everything of `snapshot` relative to origin_world, for points within extent_m of it.
+void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world, double extent_m,
+                LocalCamera& local) noexcept;
+
+}  // namespace depthgrid::search
