@@ -173,18 +173,37 @@ TEST(ReferenceAnalytic, WorldBoxAndUncoveredSpace) {
 }
 
 TEST(ReferenceAnalytic, TheBoxLimitLeavesAValidInterval) {
+  // Two cameras a metre apart see a wall and a bar before it, each its own: the bars' shadows cross 1.35 m away.
   Rigging rig;
-  rig.add(Pose::Identity(), 2.0F);
+  for (const double side : {-1.0, 1.0}) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = 0.5 * side;
+    rig.add(pose, 3.0F);
+    for (int v = 0; v < 48; ++v) {
+      for (int u = 0; u < 64; ++u) {
+        if (side * (u - 32) < -12 && side * (u - 32) > -20) {
+          rig.image(side < 0 ? 0 : 1)[static_cast<std::size_t>(v * 64 + u)] = 1.0F;
+        }
+      }
+    }
+  }
   rig.problem().space = FrustumSpace{0, 0.3, 4.0};
+  const Vector3d p(0.02, 0.01, 1.1);
+  const Interval exact = rig.distance(p);
+  ASSERT_TRUE(exact.hi_m);
+  ASSERT_FALSE(exact.limit_reached);
+  ASSERT_GT(exact.boxes, 10);
   SearchSettings settings;
+  double last_lo_m = 0;
   for (const std::int64_t limit : {1, 3, 10, 30, 100}) {
     settings.box_limit = limit;
-    const Interval interval = Reference(rig.problem()).distance({0.1, 0.05, 1.75}, settings);
-    EXPECT_LE(interval.lo_m, 0.25 + 1e-12);
-    EXPECT_GE(interval.hi_m.value_or(1.0), 0.25 - 1e-12);
+    const Interval interval = Reference(rig.problem()).distance(p, settings);
+    EXPECT_LE(interval.lo_m, *exact.hi_m);
+    EXPECT_GE(interval.hi_m.value_or(1.0), exact.lo_m);
+    EXPECT_GE(interval.lo_m, last_lo_m);
+    EXPECT_EQ(interval.limit_reached, limit < exact.boxes);
+    last_lo_m = interval.lo_m;
   }
-  settings.box_limit = 1;
-  EXPECT_TRUE(Reference(rig.problem()).distance({0.1, 0.05, 1.75}, settings).limit_reached);
 }
 
 }  // namespace

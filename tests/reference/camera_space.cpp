@@ -24,7 +24,7 @@ float reading_m(const DepthView& view, const MeasurementRule& rule, int u, int v
     if (units == 0 || units == 65535 || listed) {
       return 0;
     }
-    depth_m = static_cast<float>(units) * static_cast<float>(view.metres_per_unit);
+    depth_m = static_cast<float>(units * view.metres_per_unit);
   } else {
     depth_m = reinterpret_cast<const float*>(row)[u];
   }
@@ -37,42 +37,6 @@ float reading_m(const DepthView& view, const MeasurementRule& rule, int u, int v
   return depth_m;
 }
 
-/// Distance of x from an interval.
-double gap(double x, double low, double high) { return std::max({low - x, x - high, 0.0}); }
-
-/// A pixel's pyramid between two depths: a0 z <= x <= a1 z, b0 z <= y <= b1 z, d1 <= z <= d2.
-struct Piece {
-  double a0, a1, b0, b1, d1_m, d2_m;
-
-  [[nodiscard]] double squared_distance_at(const Eigen::Vector3d& p, double z) const {
-    const double dx = gap(p.x(), a0 * z, a1 * z);
-    const double dy = gap(p.y(), b0 * z, b1 * z);
-    return dx * dx + dy * dy + (p.z() - z) * (p.z() - z);
-  }
-
-  /// The squared distance to the slice at depth z is convex in z: golden-section search over the depths that a ball of
-  /// this radius reaches.
-  [[nodiscard]] bool meets_ball(const Eigen::Vector3d& p, double radius_m) const {
-    double low = std::max(d1_m, p.z() - radius_m);
-    double high = std::min(d2_m, p.z() + radius_m);
-    if (low > high) {
-      return false;
-    }
-    constexpr double kGolden = 0.6180339887498949;
-    for (int step = 0; step < 60 && high - low > 1e-12; ++step) {
-      const double left = high - kGolden * (high - low);
-      const double right = low + kGolden * (high - low);
-      const double at_left = squared_distance_at(p, left);
-      const double at_right = squared_distance_at(p, right);
-      if (std::min(at_left, at_right) <= radius_m * radius_m) {
-        return true;
-      }
-      (at_left < at_right ? high : low) = at_left < at_right ? right : left;
-    }
-    return std::min(squared_distance_at(p, low), squared_distance_at(p, high)) <= radius_m * radius_m;
-  }
-};
-
 }  // namespace
 
 CameraSpace::CameraSpace(const CameraInput& input)
@@ -81,7 +45,12 @@ CameraSpace::CameraSpace(const CameraInput& input)
       centre_world_(input.T_world_camera.translation()),
       near_m_(input.rule.near_m),
       pose_(input.pose),
+      border_slopes_{-camera_.cx_px / camera_.fx_px, (camera_.width_px - camera_.cx_px) / camera_.fx_px,
+                     -camera_.cy_px / camera_.fy_px, (camera_.height_px - camera_.cy_px) / camera_.fy_px},
       pixels_(static_cast<std::size_t>(input.camera.width_px) * static_cast<std::size_t>(input.camera.height_px)) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    border_scales_[i] = 1 / std::hypot(1.0, border_slopes_[i]);
+  }
   const DepthView& view = input.frame.depth;
   if (view.data == nullptr || view.width_px != camera_.width_px || view.height_px != camera_.height_px) {
     return;  // no frame: no measurement anywhere, nothing free
@@ -92,8 +61,12 @@ CameraSpace::CameraSpace(const CameraInput& input)
     for (int u = 0; u < camera_.width_px; ++u) {
       Pixel& pixel = pixels_[index(u, v)];
       if (input.frame.robot.near_m != nullptr) {
-        pixel.robot_near_m = input.frame.robot.near_m[input.frame.robot.stride_px * v + u];
-        pixel.robot_far_m = input.frame.robot.far_m[input.frame.robot.stride_px * v + u];
+        const double near_m = input.frame.robot.near_m[input.frame.robot.stride_px * v + u];
+        const double far_m = input.frame.robot.far_m[input.frame.robot.stride_px * v + u];
+        if (near_m > 0 && near_m <= far_m && std::isfinite(far_m)) {
+          pixel.robot_near_m = near_m;
+          pixel.robot_far_m = far_m;
+        }
       }
       const double depth_m = reading_m(view, input.rule, u, v);
       if (depth_m > 0) {
@@ -101,7 +74,7 @@ CameraSpace::CameraSpace(const CameraInput& input)
         const double front_m = depth_m - (m.constant_m + m.linear * depth_m + m.quadratic_per_m * depth_m * depth_m);
         const bool shows_robot =
             pixel.robot_near_m > 0 && pixel.robot_near_m <= front_m && depth_m <= pixel.robot_far_m;
-        reduced_m[index(u, v)] = std::max(0.0, shows_robot ? pixel.robot_far_m : front_m);
+        reduced_m[index(u, v)] = std::max(0.0, shows_robot ? pixel.robot_far_m + input.robot_pocket_m : front_m);
       }
     }
   }
@@ -137,9 +110,32 @@ bool CameraSpace::not_free(const Eigen::Vector3d& p_world) const {
   return !free && !robot;
 }
 
-std::array<double, 4> CameraSpace::border_slopes() const {
-  return {-camera_.cx_px / camera_.fx_px, (camera_.width_px - camera_.cx_px) / camera_.fx_px,
-          -camera_.cy_px / camera_.fy_px, (camera_.height_px - camera_.cy_px) / camera_.fy_px};
+CameraSpace::Depths CameraSpace::not_free_depths(int u, int v) const {
+  const Pixel& pixel = pixels_[index(u, v)];
+  // The blind zone and what begins at g, each less the robot's interval.
+  const double start_m = std::max(pixel.free_m, near_m_);
+  if (pixel.robot_near_m <= 0) {
+    return {{{0, near_m_}, {start_m, kInfinity}, {0, 0}, {0, 0}}};
+  }
+  return {{{0, std::min(near_m_, pixel.robot_near_m)},
+           {start_m, pixel.robot_near_m},
+           {pixel.robot_far_m, near_m_},
+           {std::max(start_m, pixel.robot_far_m), kInfinity}}};
+}
+
+PyramidPiece CameraSpace::piece(int u, int v, double d1_m, double d2_m) const {
+  return {(u - camera_.cx_px) / camera_.fx_px,
+          (u + 1 - camera_.cx_px) / camera_.fx_px,
+          (v - camera_.cy_px) / camera_.fy_px,
+          (v + 1 - camera_.cy_px) / camera_.fy_px,
+          d1_m,
+          d2_m};
+}
+
+std::array<double, 4> CameraSpace::inside_m(const Eigen::Vector3d& p) const {
+  return {
+      (p.x() - border_slopes_[0] * p.z()) * border_scales_[0], (border_slopes_[1] * p.z() - p.x()) * border_scales_[1],
+      (p.y() - border_slopes_[2] * p.z()) * border_scales_[2], (border_slopes_[3] * p.z() - p.y()) * border_scales_[3]};
 }
 
 bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double radius_m) const {
@@ -148,14 +144,11 @@ bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double rad
     return true;  // reaches the camera's plane or behind it
   }
   // Outside the image is the union of four half spaces (and what lies behind the camera).
-  const auto [left, right, top, bottom] = border_slopes();
-  const double inside_m =
-      std::min({(p.x() - left * p.z()) / std::hypot(1.0, left), (right * p.z() - p.x()) / std::hypot(1.0, right),
-                (p.y() - top * p.z()) / std::hypot(1.0, top), (bottom * p.z() - p.y()) / std::hypot(1.0, bottom)});
-  if (inside_m <= radius_m) {
+  const std::array<double, 4> inside = inside_m(p);
+  if (*std::min_element(inside.begin(), inside.end()) <= radius_m) {
     return true;
   }
-  // Inside the image, pixel by pixel: what is left of z > 0 without (near, g) and without the robot's interval.
+  // Inside the image, pixel by pixel.
   const WorldBox around{p - Eigen::Vector3d::Constant(radius_m), p + Eigen::Vector3d::Constant(radius_m)};
   std::array<Eigen::Vector3d, 8> corners;
   for (int i = 0; i < 8; ++i) {
@@ -167,27 +160,10 @@ bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double rad
   }
   for (int v = std::max(window->v_first, 0); v <= std::min(window->v_last, camera_.height_px - 1); ++v) {
     for (int u = std::max(window->u_first, 0); u <= std::min(window->u_last, camera_.width_px - 1); ++u) {
-      const Pixel& pixel = pixels_[index(u, v)];
-      Piece piece{(u - camera_.cx_px) / camera_.fx_px,
-                  (u + 1 - camera_.cx_px) / camera_.fx_px,
-                  (v - camera_.cy_px) / camera_.fy_px,
-                  (v + 1 - camera_.cy_px) / camera_.fy_px,
-                  0,
-                  0};
-      // The two parts of z > 0 that are not free, each less the robot's interval.
-      const double start_m = pixel.free_m > near_m_ ? pixel.free_m : near_m_;
-      const std::array<std::array<double, 2>, 2> parts{{{0, near_m_}, {start_m, kInfinity}}};
-      for (const auto& [from_m, to_m] : parts) {
-        const bool robot = pixel.robot_near_m > 0;
-        const std::array<std::array<double, 2>, 2> rest{
-            {{from_m, robot ? std::min(to_m, pixel.robot_near_m) : to_m},
-             {robot ? std::max(from_m, pixel.robot_far_m) : kInfinity, to_m}}};
-        for (const auto& [d1_m, d2_m] : rest) {
-          piece.d1_m = d1_m;
-          piece.d2_m = d2_m;
-          if (d1_m < d2_m && piece.meets_ball(p, radius_m)) {
-            return true;
-          }
+      for (const auto& [d1_m, d2_m] : not_free_depths(u, v)) {
+        const bool in_reach = d1_m < d2_m && d1_m <= p.z() + radius_m && d2_m >= p.z() - radius_m;
+        if (in_reach && piece(u, v, d1_m, d2_m).meets_ball(p, radius_m)) {
+          return true;
         }
       }
     }
@@ -196,10 +172,7 @@ bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double rad
 }
 
 bool CameraSpace::blocks(const Eigen::Vector3d& p_world) const {
-  if (not_free(p_world)) {
-    return true;
-  }
-  return has_reach() && ball_meets_not_free(p_world, reach_m((p_world - centre_world_).norm()));
+  return not_free(p_world) || (has_reach() && ball_meets_not_free(p_world, reach_m(p_world)));
 }
 
 std::array<Eigen::Vector3d, 8> CameraSpace::corners_in_camera(const WorldBox& box) const {
@@ -231,64 +204,6 @@ std::optional<CameraSpace::PixelWindow> CameraSpace::window_of(const std::array<
   return PixelWindow{pixel(u_low), pixel(v_low), pixel(u_high), pixel(v_high)};
 }
 
-bool CameraSpace::frees_box_unreached(const WorldBox& box, const std::optional<ViewLimits>& limits) const {
-  const std::array<Eigen::Vector3d, 8> corners = corners_in_camera(box);
-  std::optional<PixelWindow> window = window_of(corners);
-  if (!window) {
-    return false;
-  }
-  double z_low = kInfinity;
-  double z_high = -kInfinity;
-  for (const Eigen::Vector3d& corner : corners) {
-    z_low = std::min(z_low, corner.z() - kRoundingM);
-    z_high = std::max(z_high, corner.z() + kRoundingM);
-  }
-  if (limits) {
-    window =
-        PixelWindow{std::max(window->u_first, 0), std::max(window->v_first, 0),
-                    std::min(window->u_last, camera_.width_px - 1), std::min(window->v_last, camera_.height_px - 1)};
-    z_low = std::max(z_low, limits->d_min_m);
-    z_high = std::min(z_high, limits->d_max_m);
-  }
-  if (window->u_first < 0 || window->v_first < 0 || window->u_last >= camera_.width_px ||
-      window->v_last >= camera_.height_px) {
-    return false;
-  }
-  for (int v = window->v_first; v <= window->v_last; ++v) {
-    for (int u = window->u_first; u <= window->u_last; ++u) {
-      const Pixel& pixel = pixels_[index(u, v)];
-      const bool has_free = near_m_ < pixel.free_m;
-      const bool has_robot = pixel.robot_near_m > 0;
-      const bool in_free = near_m_ < z_low && z_high < pixel.free_m;
-      const bool in_robot = has_robot && pixel.robot_near_m <= z_low && z_high <= pixel.robot_far_m;
-      const bool joined = has_free && has_robot && pixel.robot_near_m <= pixel.free_m && near_m_ <= pixel.robot_far_m;
-      const bool low_in = near_m_ < z_low || pixel.robot_near_m <= z_low;
-      const bool high_in = z_high < pixel.free_m || z_high <= pixel.robot_far_m;
-      if (!in_free && !in_robot && !(joined && low_in && high_in)) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-bool CameraSpace::frees_box(const WorldBox& box, const std::optional<ViewLimits>& limits) const {
-  if (!has_reach()) {
-    return frees_box_unreached(box, limits);
-  }
-  double farthest_m = 0;
-  for (int i = 0; i < 8; ++i) {
-    farthest_m = std::max(farthest_m, (box.corner(i) - centre_world_).norm());
-  }
-  const double largest_reach_m = reach_m(farthest_m);
-  if (frees_box_unreached(box.grown(largest_reach_m), std::nullopt)) {
-    return true;
-  }
-  // The ball that holds every point's own ball is tighter once the box is small.
-  const double radius_m = largest_reach_m + box.half_diagonal_m() + kRoundingM;
-  return box.half_diagonal_m() < 4 * largest_reach_m && !ball_meets_not_free(box.centre(), radius_m);
-}
-
 ViewLimits CameraSpace::view_limits() const { return {std::nextafter(near_m_, kInfinity), kInfinity}; }
 
 bool CameraSpace::covers(const Eigen::Vector3d& p_world) const { return in_view(p_world, view_limits()); }
@@ -308,7 +223,7 @@ bool CameraSpace::in_view(const Eigen::Vector3d& p_world, const ViewLimits& limi
 bool CameraSpace::outside_view(const WorldBox& box, const ViewLimits& limits) const {
   // Wholly beyond one of the view's six planes.
   const std::array<Eigen::Vector3d, 8> corners = corners_in_camera(box);
-  const auto [left, right, top, bottom] = border_slopes();
+  const auto [left, right, top, bottom] = border_slopes_;
   const auto all = [&corners](auto beyond) { return std::all_of(corners.begin(), corners.end(), beyond); };
   using P = const Eigen::Vector3d&;
   return all([&](P p) { return p.z() < limits.d_min_m - kRoundingM; }) ||
@@ -321,7 +236,7 @@ bool CameraSpace::outside_view(const WorldBox& box, const ViewLimits& limits) co
 
 Eigen::Vector3d CameraSpace::nearest_border_point(const Eigen::Vector3d& p_world, const ViewLimits& limits) const {
   // Outward normals n and offsets c of the six planes n . x = c, camera frame.
-  const auto [left, right, top, bottom] = border_slopes();
+  const auto [left, right, top, bottom] = border_slopes_;
   struct Plane {
     Eigen::Vector3d normal;
     double offset_m;
@@ -342,7 +257,7 @@ Eigen::Vector3d CameraSpace::nearest_border_point(const Eigen::Vector3d& p_world
       nearest = p + (distance_m + kRoundingM) * plane.normal;
     }
   }
-  return R_camera_world_.transpose() * nearest + centre_world_;
+  return to_world(nearest);
 }
 
 }  // namespace depthgrid::reference

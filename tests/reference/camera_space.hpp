@@ -1,4 +1,4 @@
-// What one camera has not seen free: exact membership, an exact ball test and a sound proof for boxes. Double
+// What one camera has not seen free: exact membership, an exact ball test, and for boxes the pixels that matter. Double
 // precision and written for obviousness; shares no geometry with the product (own projection, own minimum filter).
 #pragma once
 
@@ -12,6 +12,8 @@
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/pose.hpp"
+#include "reference/primitive.hpp"
+#include "reference/pyramid_piece.hpp"
 
 namespace depthgrid::reference {
 
@@ -23,21 +25,7 @@ struct CameraInput {
   Frame frame;
   SensorMargin sensor;
   PoseMargin pose;
-};
-
-/// A box with axes along the world's, metres.
-struct WorldBox {
-  Eigen::Vector3d low, high;
-
-  [[nodiscard]] Eigen::Vector3d centre() const { return 0.5 * (low + high); }
-  [[nodiscard]] double half_diagonal_m() const { return 0.5 * (high - low).norm(); }
-  [[nodiscard]] Eigen::Vector3d corner(int index) const {
-    return {(index & 1) != 0 ? high.x() : low.x(), (index & 2) != 0 ? high.y() : low.y(),
-            (index & 4) != 0 ? high.z() : low.z()};
-  }
-  [[nodiscard]] WorldBox grown(double by_m) const {
-    return {low - Eigen::Vector3d::Constant(by_m), high + Eigen::Vector3d::Constant(by_m)};
-  }
+  double robot_pocket_m = 0;  ///< a robot pixel frees this much beyond the robot's exit
 };
 
 /// The part of the camera's own view that counts, when it is the principal camera: space outside it is of no interest.
@@ -59,10 +47,6 @@ class CameraSpace {
   /// Membership of the camera's factor of O: some y in N_k minus R_k with |x - y| <= e_k(x).
   [[nodiscard]] bool blocks(const Eigen::Vector3d& p_world) const;
 
-  /// True only if no point of the box (or, with `limits`, no point of it in this camera's view between the two depths)
-  /// is blocked by this camera. False proves nothing.
-  [[nodiscard]] bool frees_box(const WorldBox& box, const std::optional<ViewLimits>& limits) const;
-
   /// x projects inside the image with z > near_k, whatever was measured.
   [[nodiscard]] bool covers(const Eigen::Vector3d& p_world) const;
   /// The depths beyond near_k.
@@ -80,37 +64,58 @@ class CameraSpace {
   /// g of a pixel of the image, metres; 0 = nothing is free.
   [[nodiscard]] double free_depth_m(int u, int v) const { return pixels_[index(u, v)].free_m; }
 
+  /// Some pixels of the image plane, inclusive; may lie outside the image.
+  struct PixelWindow {
+    int u_first, v_first, u_last, v_last;
+  };
+  /// Up to four depth intervals [near, far] of one pixel, far may be infinite; those with near >= far hold nothing.
+  using Depths = std::array<std::array<double, 2>, 4>;
+
+  /// The depths z > 0 of a pixel of the image that are not free and not the robot.
+  [[nodiscard]] Depths not_free_depths(int u, int v) const;
+  /// The pixel's pyramid between two depths.
+  [[nodiscard]] PyramidPiece piece(int u, int v, double d1_m, double d2_m) const;
+  /// All pixels on which the hull of the corners projects, or nothing when it is not wholly before the camera.
+  [[nodiscard]] std::optional<PixelWindow> window_of(const std::array<Eigen::Vector3d, 8>& corners) const;
+  [[nodiscard]] std::array<Eigen::Vector3d, 8> corners_in_camera(const WorldBox& box) const;
+  /// How far inside the image's left, right, top and bottom border plane a point lies, camera frame; negative outside.
+  [[nodiscard]] std::array<double, 4> inside_m(const Eigen::Vector3d& p_camera) const;
+
+  [[nodiscard]] const PinholeCamera& intrinsics() const { return camera_; }
+  [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& p_world) const {
+    return R_camera_world_ * (p_world - centre_world_);
+  }
+  [[nodiscard]] Eigen::Vector3d to_world(const Eigen::Vector3d& p_camera) const {
+    return R_camera_world_.transpose() * p_camera + centre_world_;
+  }
+  /// e at a point, metres.
+  [[nodiscard]] double reach_m(const Eigen::Vector3d& p_world) const {
+    return reach_at_range_m((p_world - centre_world_).norm());
+  }
+  [[nodiscard]] double reach_at_range_m(double range_m) const {
+    return pose_.translation_m + pose_.rotation_rad * range_m + pose_.time_m;
+  }
+  [[nodiscard]] bool has_reach() const { return pose_.translation_m > 0 || pose_.rotation_rad > 0 || pose_.time_m > 0; }
+
  private:
   struct Pixel {
     double free_m = 0;        ///< g
     double robot_near_m = 0;  ///< 0: no robot
     double robot_far_m = 0;
   };
-  struct PixelWindow {
-    int u_first, v_first, u_last, v_last;  ///< inclusive; may lie outside the image
-  };
 
   [[nodiscard]] std::size_t index(int u, int v) const {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(camera_.width_px) + static_cast<std::size_t>(u);
   }
-  [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& p_world) const {
-    return R_camera_world_ * (p_world - centre_world_);
-  }
-  [[nodiscard]] double reach_m(double range_m) const {
-    return pose_.translation_m + pose_.rotation_rad * range_m + pose_.time_m;
-  }
-  [[nodiscard]] bool has_reach() const { return pose_.translation_m > 0 || pose_.rotation_rad > 0 || pose_.time_m > 0; }
-  [[nodiscard]] std::array<Eigen::Vector3d, 8> corners_in_camera(const WorldBox& box) const;
-  [[nodiscard]] std::optional<PixelWindow> window_of(const std::array<Eigen::Vector3d, 8>& corners) const;
-  [[nodiscard]] bool frees_box_unreached(const WorldBox& box, const std::optional<ViewLimits>& limits) const;
-  /// Slopes x/z and y/z of the image's four borders: left, right, top, bottom.
-  [[nodiscard]] std::array<double, 4> border_slopes() const;
 
   PinholeCamera camera_;
   Eigen::Matrix3d R_camera_world_;
   Eigen::Vector3d centre_world_;
   double near_m_;
   PoseMargin pose_;
+  /// Of the borders left, right, top and bottom: slope x/z or y/z and the inverse length of the plane's normal.
+  std::array<double, 4> border_slopes_{};
+  std::array<double, 4> border_scales_{};
   std::vector<Pixel> pixels_;
 };
 

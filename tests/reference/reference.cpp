@@ -7,18 +7,18 @@
 namespace depthgrid::reference {
 namespace {
 
+/// The bisection for the axis' nearest point errs by less.
+constexpr double kRoundingM = 1e-9;
+
 struct OpenBox {
-  double distance_m;  ///< from P to the box: nothing in it is nearer
+  double distance_m;  ///< from the axis to O in the box: nothing in it is nearer
+  bool examined;      ///< distance_m is all that the cameras can prove; else only that from the axis to the box
   WorldBox box;
 };
 
 struct Farther {
   bool operator()(const OpenBox& a, const OpenBox& b) const { return a.distance_m > b.distance_m; }
 };
-
-Eigen::Vector3d nearest_in(const WorldBox& box, const Eigen::Vector3d& p) {
-  return p.cwiseMax(box.low).cwiseMin(box.high);
-}
 
 }  // namespace
 
@@ -37,45 +37,56 @@ bool Reference::in_space(const Eigen::Vector3d& p_world) const {
   return (p_world.array() >= box.low.array()).all() && (p_world.array() <= box.high.array()).all();
 }
 
+bool Reference::covered(const Eigen::Vector3d& p_world) const {
+  return std::any_of(cameras_.begin(), cameras_.end(),
+                     [&](const CameraSpace& camera) { return camera.covers(p_world); });
+}
+
 bool Reference::is_obstacle(const Eigen::Vector3d& p_world) const {
   if (!in_space(p_world)) {
     return outside_ == Policy::obstacle;
   }
   const bool blocked =
       std::all_of(cameras_.begin(), cameras_.end(), [&](const CameraSpace& camera) { return camera.blocks(p_world); });
-  const bool counts =
-      uncovered_ == Policy::obstacle ||
-      std::any_of(cameras_.begin(), cameras_.end(), [&](const CameraSpace& camera) { return camera.covers(p_world); });
-  return blocked && counts;
+  return blocked && (uncovered_ == Policy::obstacle || covered(p_world));
 }
 
-bool Reference::holds_no_obstacle(const WorldBox& box) const {
+double Reference::nearest_possible_m(const WorldBox& box, double known_m, double enough_m,
+                                     std::vector<Nearness>& cameras,
+                                     std::optional<Eigen::Vector3d>& suspect_world) const {
   const auto* frustum = std::get_if<FrustumSpace>(&space_);
-  if (frustum != nullptr && cameras_[frustum->principal].outside_view(box, {frustum->d_min_m, frustum->d_max_m})) {
-    return true;  // of the outside only the border counts, and that is looked at once, in distance()
-  }
-  std::vector<std::size_t> covering;
-  for (std::size_t k = 0; k < cameras_.size(); ++k) {
-    if (uncovered_ == Policy::ignored && !cameras_[k].covers_nothing_of(box)) {
-      covering.push_back(k);
-    }
-  }
-  if (uncovered_ == Policy::ignored && covering.empty()) {
-    return true;
-  }
-  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+  suspect_world.reset();
+  // What O holds of the box every single camera blocks.
+  double result_m = known_m;
+  for (std::size_t k = 0; k < cameras.size() && result_m < enough_m; ++k) {
     std::optional<ViewLimits> limits;
     if (frustum != nullptr && frustum->principal == k) {
       limits = ViewLimits{frustum->d_min_m, frustum->d_max_m};
     }
-    if (uncovered_ == Policy::ignored && covering.size() == 1 && covering.front() == k) {
-      limits = cameras_[k].view_limits();  // beyond this camera's view nothing counts
-    }
-    if (cameras_[k].frees_box(box, limits)) {
-      return true;
+    const double blocked_m = cameras[k].of_blocked_m(box, limits, result_m);
+    if (blocked_m > result_m) {
+      result_m = blocked_m;
+      suspect_world = cameras[k].suspect_world();
     }
   }
-  return false;
+  if (result_m >= enough_m) {
+    return result_m;
+  }
+  // Of the outside only the border counts, and that is looked at once, in distance().
+  if (frustum != nullptr && cameras_[frustum->principal].outside_view(box, {frustum->d_min_m, frustum->d_max_m})) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (uncovered_ == Policy::ignored) {
+    // What counts lies in the view of some camera, and that camera blocks it.
+    double covered_m = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < cameras.size() && covered_m > result_m; ++k) {
+      if (!cameras_[k].covers_nothing_of(box)) {
+        covered_m = std::min(covered_m, cameras[k].of_blocked_m(box, cameras_[k].view_limits(), result_m));
+      }
+    }
+    result_m = std::max(result_m, covered_m);
+  }
+  return result_m;
 }
 
 Eigen::Vector3d Reference::nearest_border_point(const Eigen::Vector3d& p_world) const {
@@ -97,42 +108,64 @@ Eigen::Vector3d Reference::nearest_border_point(const Eigen::Vector3d& p_world) 
   return nearest;
 }
 
-Interval Reference::distance(const Eigen::Vector3d& p_world, const SearchSettings& settings) const {
+Eigen::Vector3d Reference::nearest_border_point(const Primitive& primitive) const {
+  const Eigen::Vector3d at_a = nearest_border_point(primitive.a_world);
+  const Eigen::Vector3d at_b = nearest_border_point(primitive.b_world);
+  return (at_a - primitive.a_world).norm() <= (at_b - primitive.b_world).norm() ? at_a : at_b;
+}
+
+double Reference::distance_to_border_m(const Primitive& primitive) const {
+  return std::max(0.0, axis_distance_m(primitive, nearest_border_point(primitive)) - primitive.radius_m);
+}
+
+Interval Reference::distance(const Primitive& primitive, const SearchSettings& settings) const {
   Interval result;
-  if (!in_space(p_world)) {
+  if (!in_space(primitive)) {
     result.point_outside = outside_ == Policy::ignored;
     if (outside_ == Policy::obstacle) {
       result.hi_m = 0.0;
-      result.witness_world = p_world;
+      result.witness_world = in_space(primitive.a_world) ? primitive.b_world : primitive.a_world;
     }
     return result;
   }
+  // Everything below measures from the axis; the radius goes off at the end.
+  const double radius_m = primitive.radius_m;
+  const double reported_m = rho_m_ + radius_m;
+  const double cap_m = std::min(rho_m_, settings.enough_m) + radius_m;
   double hi_m = std::numeric_limits<double>::infinity();
   const auto offer = [&](const Eigen::Vector3d& candidate) {
-    const double distance_m = (candidate - p_world).norm();
-    if (distance_m < hi_m && distance_m <= rho_m_ && is_obstacle(candidate)) {
-      hi_m = distance_m;
-      result.hi_m = distance_m;
+    const double distance_m = axis_distance_m(primitive, candidate);
+    if (distance_m < hi_m && distance_m <= reported_m && is_obstacle(candidate)) {
+      hi_m = std::max(distance_m, radius_m);  // whatever lies in the primitive is as near as can be
+      result.hi_m = hi_m - radius_m;
       result.witness_world = candidate;
     }
   };
-  offer(p_world);
+  offer(primitive.a_world);
+  offer(primitive.b_world);
   if (outside_ == Policy::obstacle) {
-    offer(nearest_border_point(p_world));
+    offer(nearest_border_point(primitive));
   }
 
-  WorldBox root = WorldBox{p_world, p_world}.grown(rho_m_);
+  WorldBox root =
+      WorldBox{primitive.a_world.cwiseMin(primitive.b_world), primitive.a_world.cwiseMax(primitive.b_world)}.grown(
+          cap_m);
   if (const auto* box = std::get_if<WorldBox>(&space_)) {
     root = {root.low.cwiseMax(box->low), root.high.cwiseMin(box->high)};
   }
+  std::vector<Nearness> cameras;
+  for (const CameraSpace& camera : cameras_) {
+    cameras.emplace_back(camera, primitive, cap_m);
+  }
   std::priority_queue<OpenBox, std::vector<OpenBox>, Farther> open;
-  open.push({0.0, root});
+  open.push({0.0, false, root});
   // Nothing nearer than this is in O unless it lies in an open box; smallest boxes that stay undecided lower it.
   double undecided_m = std::numeric_limits<double>::infinity();
+  std::optional<Eigen::Vector3d> suspect_world;
   while (!open.empty()) {
-    const OpenBox next = open.top();
+    OpenBox next = open.top();
     const double lo_m = std::min(undecided_m, next.distance_m);
-    if (next.distance_m > std::min(hi_m, rho_m_) || hi_m - lo_m <= settings.gap_m) {
+    if (lo_m >= std::min(hi_m, cap_m) - settings.gap_m || hi_m <= radius_m) {
       break;
     }
     if (result.boxes >= settings.box_limit) {
@@ -140,16 +173,29 @@ Interval Reference::distance(const Eigen::Vector3d& p_world, const SearchSetting
       break;
     }
     open.pop();
-    ++result.boxes;
-    if (holds_no_obstacle(next.box)) {
-      continue;
+    if (!next.examined) {
+      ++result.boxes;
+      const double bound_m =
+          nearest_possible_m(next.box, next.distance_m, std::min(hi_m, cap_m), cameras, suspect_world);
+      if (bound_m >= std::min(hi_m, cap_m)) {
+        continue;
+      }
+      if (suspect_world) {
+        offer(*suspect_world);
+      }
+      next.examined = true;
+      if (bound_m > next.distance_m) {
+        next.distance_m = bound_m;
+        open.push(next);
+        continue;
+      }
     }
-    offer(nearest_in(next.box, p_world));
+    offer(next.box.nearest_to(nearest_on_axis(primitive, next.box)));
     offer(next.box.centre());
     for (int i = 0; i < 8; ++i) {
       offer(next.box.corner(i));
     }
-    if ((next.box.high - next.box.low).maxCoeff() <= settings.smallest_box_m) {
+    if (next.box.longest_side_m() <= settings.smallest_box_m) {
       undecided_m = std::min(undecided_m, next.distance_m);
       continue;
     }
@@ -157,13 +203,15 @@ Interval Reference::distance(const Eigen::Vector3d& p_world, const SearchSetting
     for (int i = 0; i < 8; ++i) {
       const Eigen::Vector3d corner = next.box.corner(i);
       const WorldBox child{corner.cwiseMin(centre), corner.cwiseMax(centre)};
-      const double distance_m = (nearest_in(child, p_world) - p_world).norm();
-      if (distance_m <= std::min(hi_m, rho_m_)) {
-        open.push({distance_m, child});
+      const Eigen::Vector3d on_axis = nearest_on_axis(primitive, child);
+      const double distance_m = std::max(next.distance_m, (child.nearest_to(on_axis) - on_axis).norm() - kRoundingM);
+      if (distance_m < std::min(hi_m, cap_m)) {
+        open.push({distance_m, false, child});
       }
     }
   }
-  result.lo_m = std::min({undecided_m, hi_m, rho_m_, open.empty() ? rho_m_ : open.top().distance_m});
+  const double open_m = open.empty() ? cap_m : open.top().distance_m;
+  result.lo_m = std::max(0.0, std::min({undecided_m, hi_m, cap_m, open_m}) - radius_m);
   return result;
 }
 
