@@ -1,0 +1,96 @@
+// A call that is stopped early holds a lower bound and says so.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "search/search_setup.hpp"
+
+namespace depthgrid::search {
+namespace {
+
+using Eigen::Vector3d;
+using reference::Random;
+using reference::RandomProblem;
+
+TEST(Budget, OfMoreNodesGivesALargerBoundUpToTheWholeAnswer) {
+  int stopped = 0;
+  int raised = 0;
+  for_random_problems(20, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random.chance(0.5) ? SpaceKind::box : SpaceKind::frustum, true);
+    Asker asker(setup);
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive primitive = random.chance(0.5) ? point(p_world) : sphere(p_world, random.uniform(0, 0.05));
+      const Proximity whole = asker.distance(primitive).nearest;
+      EXPECT_FALSE(whole.budget);
+      double before_m = 0;
+      bool finished = false;
+      for (std::int64_t nodes = 1; nodes <= (std::int64_t{1} << 40); nodes = nodes < 40 ? nodes + 1 : nodes * 2) {
+        const Proximity part = asker.distance(primitive, {nodes, 0}).nearest;
+        ASSERT_FALSE(std::isnan(part.distance_m)) << nodes << " nodes";
+        EXPECT_GE(part.distance_m, before_m) << nodes << " nodes";
+        EXPECT_LE(part.distance_m, whole.distance_m) << nodes << " nodes";
+        EXPECT_TRUE(part.budget || part.distance_m == whole.distance_m) << nodes << " nodes";
+        EXPECT_TRUE(part.budget || part.state == whole.state) << nodes << " nodes";
+        EXPECT_TRUE(part.budget || !finished || part.state == whole.state) << nodes << " nodes";
+        EXPECT_FALSE(part.budget && finished) << "fewer nodes than " << nodes << " were enough";
+        finished = !part.budget;
+        stopped += part.budget ? 1 : 0;
+        raised += part.distance_m > before_m && part.budget ? 1 : 0;
+        before_m = part.distance_m;
+      }
+      EXPECT_TRUE(finished);
+    }
+  });
+  EXPECT_GT(stopped, 0) << "no budget ran out";
+  EXPECT_GT(raised, 0) << "no bound of a stopped search was above zero";
+}
+
+TEST(Budget, IsSharedByThePrimitivesOfACall) {
+  for_random_problems(10, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, SpaceKind::box, true);
+    Asker asker(setup);
+    std::vector<Primitive> primitives;
+    for (int i = 0; i < 9; ++i) {
+      primitives.push_back(sphere(random.in_cube(0.6), random.uniform(0, 0.05)));
+    }
+    const std::vector<Answer> whole = asker.distances(primitives);
+    std::vector<Answer> part(primitives.size());
+    Count all;
+    asker.search().distances(asker.snapshot(), primitives, part, {}, &all);
+    EXPECT_GT(all.nodes, 0);
+    for (const std::int64_t nodes : {std::int64_t{1}, all.nodes / 8, all.nodes / 2}) {
+      Count count;
+      asker.search().distances(asker.snapshot(), primitives, part, {std::max<std::int64_t>(nodes, 1), 0}, &count);
+      bool stopped = false;
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        ASSERT_FALSE(std::isnan(part[i].nearest.distance_m)) << "primitive " << i;
+        EXPECT_LE(part[i].nearest.distance_m, whole[i].nearest.distance_m) << "primitive " << i;
+        EXPECT_TRUE(part[i].nearest.budget || part[i].nearest.distance_m == whole[i].nearest.distance_m) << i;
+        stopped = stopped || part[i].nearest.budget;
+      }
+      EXPECT_TRUE(stopped || all.nodes <= nodes) << nodes << " of " << all.nodes << " nodes";
+    }
+  });
+}
+
+TEST(Budget, OfTimeGivesALowerBound) {
+  int stopped = 0;
+  for_random_problems(10, {}, [&](const RandomProblem& problem, Random&) {
+    Asker asker(make_setup(problem, SpaceKind::box, true));
+    for (const Vector3d& p_world : problem.points_world) {
+      const Proximity whole = asker.distance(point(p_world)).nearest;
+      for (const double time_s : {1e-12, 1e-6, 1e-5, 1e-4}) {
+        const Proximity part = asker.distance(point(p_world), {0, time_s}).nearest;
+        ASSERT_FALSE(std::isnan(part.distance_m)) << time_s << " s";
+        EXPECT_LE(part.distance_m, whole.distance_m) << time_s << " s";
+        EXPECT_TRUE(part.budget || part.distance_m == whole.distance_m) << time_s << " s";
+        stopped += part.budget ? 1 : 0;
+      }
+    }
+  });
+  EXPECT_GT(stopped, 0) << "a picosecond was always enough";
+}
+
+}  // namespace
+}  // namespace depthgrid::search

@@ -1,0 +1,294 @@
+// Spheres and capsules: what they must have to do with points, and that they touch when moved by their own answer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "search/search_setup.hpp"
+
+namespace depthgrid::search {
+namespace {
+
+using Eigen::Vector3d;
+using reference::Interval;
+using reference::Random;
+using reference::RandomProblem;
+using reference::Reference;
+
+SpaceKind random_space(Random& random) { return random.chance(0.5) ? SpaceKind::box : SpaceKind::frustum; }
+
+/// A point, a sphere or a capsule at p.
+Primitive random_primitive(Random& random, const Vector3d& p_world) {
+  switch (random.integer(0, 2)) {
+    case 0:
+      return point(p_world);
+    case 1:
+      return sphere(p_world, random.uniform(0.005, 0.1));
+    default:
+      return capsule(p_world, p_world + random.in_cube(0.2), random.uniform(0, 0.08));
+  }
+}
+
+Primitive moved(const Primitive& primitive, const Vector3d& by_m) {
+  return {primitive.a_world + by_m, primitive.b_world + by_m, primitive.radius_m};
+}
+
+std::string to_text(const Primitive& primitive) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "{{" << primitive.a_world.x() << ", " << primitive.a_world.y() << ", " << primitive.a_world.z() << "}, {"
+       << primitive.b_world.x() << ", " << primitive.b_world.y() << ", " << primitive.b_world.z() << "}, "
+       << primitive.radius_m << '}';
+  return text.str();
+}
+
+SearchSetup with_reach(SearchSetup setup, double more_m) {
+  for (CameraMargins& margins : setup.settings.margins) {
+    margins.translation_m += more_m;
+  }
+  return setup;
+}
+
+/// The nearest point w of an answer lies within e_k + r of every camera's not-free set. The primitive moved by the
+/// answer touches w to within the 1e-5 m of the answer and the 1e-5 m of the nearest point, so the distance to the set
+/// whose e_k are larger by r is then at most the sum, and no answer exceeds a distance.
+constexpr double kTouchM = 2e-5;
+
+TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
+  int told = 0;
+  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker asker(setup);
+    Asker grown(with_reach(setup, setup.settings.resolution_m));
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive primitive = random_primitive(random, p_world);
+      const Proximity nearest = asker.distance(primitive).nearest;
+      if (!(nearest.distance_m > 0 && nearest.distance_m < setup.settings.rho_m)) {
+        continue;
+      }
+      ASSERT_NEAR(nearest.direction_world.norm(), 1, 1e-9) << to_text(primitive);
+      const Primitive there = moved(primitive, nearest.distance_m * nearest.direction_world);
+      EXPECT_LE(grown.distance(there).nearest.distance_m, kTouchM)
+          << to_text(primitive) << " answers " << nearest.distance_m;
+      ++told;
+    }
+  });
+  EXPECT_GT(told, 0);
+}
+
+/// With one camera a point within r of the not-free set is within r / (1 - growth of e_k per metre) of O itself.
+TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
+  int told = 0;
+  reference::RandomOptions options;
+  options.cameras = 1;
+  for_random_problems(60, options, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    const double shortfall_m = setup.settings.resolution_m / (1 - setup.settings.margins[0].rotation_rad);
+    Asker asker(setup);
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive primitive = random_primitive(random, p_world);
+      const Proximity nearest = asker.distance(primitive).nearest;
+      if (!(nearest.distance_m > 0 && nearest.distance_m < setup.settings.rho_m)) {
+        continue;
+      }
+      const Primitive there = moved(primitive, nearest.distance_m * nearest.direction_world);
+      const double rest_m = asker.distance(there).nearest.distance_m;
+      EXPECT_LE(rest_m, shortfall_m + kTouchM) << to_text(primitive) << " answers " << nearest.distance_m;
+      EXPECT_LE(rest_m, std::max(nearest.distance_m, shortfall_m + kTouchM)) << to_text(primitive);
+      ++told;
+    }
+  });
+  EXPECT_GT(told, 0);
+}
+
+/// On the way there no point of the primitive lies in the obstacle.
+TEST(MovedByItsAnswer, MeetsNothingOnTheWay) {
+  int told = 0;
+  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker asker(setup);
+    const Reference oracle(oracle_problem(setup));
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive primitive = random_primitive(random, p_world);
+      const Proximity nearest = asker.distance(primitive).nearest;
+      if (!(nearest.distance_m > 0)) {
+        continue;
+      }
+      for (int i = 0; i < 200; ++i) {
+        const Vector3d on_axis = primitive.a_world + random.uniform(0, 1) * (primitive.b_world - primitive.a_world);
+        // Straight ahead, where contact will be, and anywhere around.
+        const Vector3d direction = random.chance(0.5) && nearest.distance_m < setup.settings.rho_m
+                                       ? nearest.direction_world
+                                       : random.direction();
+        const Vector3d inside = on_axis + random.uniform(0, primitive.radius_m + nearest.distance_m) * direction;
+        EXPECT_FALSE(oracle.is_obstacle(inside)) << to_text(primitive) << " answers " << nearest.distance_m << ", but "
+                                                 << inside.transpose() << " is an obstacle";
+        ++told;
+      }
+    }
+  });
+  EXPECT_GT(told, 0);
+}
+
+TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
+  int told = 0;
+  for_random_problems(40, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker asker(setup);
+    for (const Vector3d& p_world : problem.points_world) {
+      const double radius_m = random.chance(0.2) ? random.uniform(0.2, 0.5) : random.uniform(0.001, 0.1);
+      // rho counts from the surface.
+      const double rho_m = setup.settings.rho_m + radius_m;
+      const Reference oracle(oracle_problem(setup, 0, rho_m));
+      const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
+      const double answer_m = asker.distance(sphere(p_world, radius_m)).nearest.distance_m;
+      const std::string text = to_text(sphere(p_world, radius_m));
+      EXPECT_LE(answer_m, std::max(0.0, oracle.distance(p_world).hi_m.value_or(rho_m) - radius_m)) << text;
+      EXPECT_GE(answer_m, grown.distance(p_world).lo_m - radius_m - kRounding - kDoubleRounding) << text;
+      told += answer_m > 0 && answer_m < setup.settings.rho_m ? 1 : 0;
+    }
+  });
+  EXPECT_GT(told, 0);
+}
+
+/// The points of the axis are sampled; between two samples D changes by at most half their distance.
+TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
+  int told = 0;
+  for_random_problems(25, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker asker(setup);
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive link = capsule(p_world, p_world + random.in_cube(0.2), random.uniform(0, 0.08));
+      const double length_m = (link.b_world - link.a_world).norm();
+      const double rho_m = setup.settings.rho_m + link.radius_m;
+      const Reference oracle(oracle_problem(setup, 0, rho_m));
+      const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
+      constexpr int kSamples = 9;
+      double upper_m = rho_m;
+      double lower_m = rho_m;
+      for (int i = 0; i < kSamples; ++i) {
+        const Vector3d on_axis = link.a_world + i / (kSamples - 1.0) * (link.b_world - link.a_world);
+        upper_m = std::min(upper_m, oracle.distance(on_axis).hi_m.value_or(rho_m));
+        lower_m = std::min(lower_m, grown.distance(on_axis).lo_m);
+      }
+      lower_m -= 0.5 * length_m / (kSamples - 1.0);
+      const double answer_m = asker.distance(link).nearest.distance_m;
+      EXPECT_LE(answer_m, std::max(0.0, upper_m - link.radius_m)) << to_text(link);
+      EXPECT_GE(answer_m, lower_m - link.radius_m - kRounding - kDoubleRounding) << to_text(link);
+      told += answer_m > 0 && answer_m < setup.settings.rho_m ? 1 : 0;
+    }
+  });
+  EXPECT_GT(told, 0);
+}
+
+TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
+  int told = 0;
+  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker asker(setup);
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive link = random_primitive(random, p_world);
+      const Answer answer = asker.distance(link);
+      if (!(answer.nearest.distance_m > 0 && answer.nearest.distance_m < setup.settings.rho_m)) {
+        continue;
+      }
+      const Vector3d to_nearest = answer.nearest.nearest_world - answer.on_axis_world;
+      EXPECT_NEAR(to_nearest.norm() - link.radius_m, answer.nearest.distance_m, kRounding + kDoubleRounding)
+          << to_text(link);
+      EXPECT_NEAR((to_nearest.normalized() - answer.nearest.direction_world).norm(), 0, 1e-9) << to_text(link);
+      const Vector3d axis = link.b_world - link.a_world;
+      const double along = (answer.on_axis_world - link.a_world).dot(axis);
+      const double length2 = axis.squaredNorm();
+      EXPECT_GE(along, -1e-12) << to_text(link);
+      EXPECT_LE(along, length2 + 1e-12) << to_text(link);
+      if (length2 == 0) {
+        EXPECT_EQ(answer.on_axis_world, link.a_world);
+      } else {
+        const double t = std::clamp((answer.nearest.nearest_world - link.a_world).dot(axis) / length2, 0.0, 1.0);
+        EXPECT_NEAR((link.a_world + t * axis - answer.on_axis_world).norm(), 0, 1e-9) << to_text(link);
+      }
+      ++told;
+    }
+  });
+  EXPECT_GT(told, 0);
+}
+
+/// Ends that differ by less than any resolution, down to the smallest number there is.
+TEST(Capsules, OfHardlyAnyLengthAreSpheres) {
+  for_random_problems(20, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker asker(setup);
+    for (const Vector3d& p_world : problem.points_world) {
+      const double radius_m = random.uniform(0, 0.1);
+      const double rho_m = setup.settings.rho_m + radius_m;
+      const Interval interval = Reference(oracle_problem(setup, 0, rho_m)).distance(p_world);
+      const Interval grown = Reference(oracle_problem(setup, setup.settings.resolution_m, rho_m)).distance(p_world);
+      for (const double length_m : {1e-3, 1e-9, 1e-15, 1e-160, std::numeric_limits<double>::denorm_min()}) {
+        const Primitive link = capsule(p_world, p_world + length_m * random.direction(), radius_m);
+        const double answer_m = asker.distance(link).nearest.distance_m;
+        EXPECT_LE(answer_m, std::max(0.0, interval.hi_m.value_or(rho_m) - radius_m)) << to_text(link);
+        EXPECT_GE(answer_m, grown.lo_m - radius_m - length_m - kRounding - kDoubleRounding) << to_text(link);
+      }
+      EXPECT_EQ(asker.distance(capsule(p_world, p_world, radius_m)).nearest.distance_m,
+                asker.distance(sphere(p_world, radius_m)).nearest.distance_m);
+      EXPECT_EQ(asker.distance(sphere(p_world, 0)).nearest.distance_m,
+                asker.distance(point(p_world)).nearest.distance_m);
+    }
+  });
+}
+
+TEST(Primitives, ThatAreNoneAreNotEvaluatedAndDisturbNobody) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for_random_problems(5, {}, [&](const RandomProblem& problem, Random& random) {
+    Asker asker(make_setup(problem, random_space(random)));
+    const Vector3d p = problem.points_world.front();
+    std::vector<Primitive> primitives{point(p), sphere(p, -1e-9), sphere(p, kNaN), sphere(p, kInfinity)};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double bad : {kNaN, kInfinity, -kInfinity}) {
+        Vector3d broken = p;
+        broken[axis] = bad;
+        primitives.push_back(point(broken));
+        primitives.push_back(capsule(p, broken, 0.05));
+        primitives.push_back(capsule(broken, p, 0.05));
+      }
+    }
+    primitives.push_back(sphere(p, 0.03));
+    const std::vector<Answer> answers = asker.distances(primitives);
+    for (std::size_t i = 1; i + 1 < answers.size(); ++i) {
+      EXPECT_EQ(answers[i].nearest.state, ProximityState::not_evaluated) << to_text(primitives[i]);
+      EXPECT_TRUE(std::isnan(answers[i].nearest.distance_m)) << to_text(primitives[i]);
+      EXPECT_TRUE(answers[i].nearest.nearest_world.array().isNaN().all()) << to_text(primitives[i]);
+    }
+    EXPECT_EQ(answers.front().nearest.distance_m, asker.distance(point(p)).nearest.distance_m);
+    EXPECT_EQ(answers.back().nearest.distance_m, asker.distance(sphere(p, 0.03)).nearest.distance_m);
+  });
+}
+
+TEST(Primitives, InOneCallHaveTheAnswersOfOneCallEach) {
+  for_random_problems(15, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Asker one_by_one(setup);
+    Asker together(setup, 4);  // fewer than are asked about: the call is made in parts
+    std::vector<Primitive> primitives;
+    for (int i = 0; i < 11; ++i) {
+      primitives.push_back(random_primitive(random, problem.points_world[0] + random.in_cube(0.3)));
+    }
+    std::vector<Answer> answers(13);
+    answers[11].nearest.distance_m = answers[12].nearest.distance_m = 7;
+    together.search().distances(together.snapshot(), primitives, answers);
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      const Proximity alone = one_by_one.distance(primitives[i]).nearest;
+      EXPECT_EQ(answers[i].nearest.distance_m, alone.distance_m) << to_text(primitives[i]);
+      EXPECT_EQ(answers[i].nearest.state, alone.state) << to_text(primitives[i]);
+    }
+    for (const std::size_t i : {11U, 12U}) {
+      EXPECT_EQ(answers[i].nearest.state, ProximityState::not_evaluated) << "nobody asked";
+      EXPECT_TRUE(std::isnan(answers[i].nearest.distance_m)) << "nobody asked";
+    }
+  });
+}
+
+}  // namespace
+}  // namespace depthgrid::search
