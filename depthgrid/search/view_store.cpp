@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -179,7 +180,8 @@ Snapshot::Snapshot(const ViewStore::State& state) noexcept : state_(&state), slo
   reference_time_s_ = std::isfinite(newest_s) ? newest_s : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = 0; k < camera_count(); ++k) {
     const CameraMargins& margins = settings.margins[k];
-    const double age_s = reference_time_s_ - view(k).time_s();  // not a number where either time is not
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const double age_s = std::isfinite(view(k).time_s()) ? reference_time_s_ - view(k).time_s() : kUnknown;
     const double motion_m = settings.v_max_m_s * (age_s + margins.half_exposure_s + margins.time_uncertainty_s);
     const double bounded_m = motion_m <= kUnboundedMotion ? motion_m : kUnboundedMotion;
     // What does not move is where it was, whenever that was.
