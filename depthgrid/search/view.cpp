@@ -18,25 +18,29 @@ float round_towards_zero(double value) noexcept {
 
 std::size_t pixel_count(const DepthImage& image) noexcept { return image.index(0, image.height_px()); }
 
-/// Levels from 1 on. `better(a, b)` is the extremum of two values.
+/// All levels. `better(a, b)` is the extremum of two values. Four texels (or pixels) two apart make one texel of the
+/// level above; four by four pixels make one of level 0.
 template <class Better>
 void build_pyramid(const DepthImage& image, const std::vector<PyramidLevel>& levels, float* texels,
                    const Better& better) noexcept {
-  for (std::size_t l = 1; l < levels.size(); ++l) {
-    const PyramidLevel& below = levels[l - 1];
-    const float* source = l == 1 ? image.data() : texels + below.offset;
-    for (int j = 0; j < levels[l].height; ++j) {
-      for (int i = 0; i < levels[l].width; ++i) {
-        float best = source[2 * j * below.width + 2 * i];
-        // A pixel of level 0 covers itself only, a texel above covers its right and lower neighbours too.
-        for (int dj = 0; dj < 4; dj += l == 1 ? 1 : 2) {
-          for (int di = 0; di < 4; di += l == 1 ? 1 : 2) {
-            if (2 * i + di < below.width && 2 * j + dj < below.height) {
-              best = better(best, source[(2 * j + dj) * below.width + 2 * i + di]);
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const PyramidLevel& level = levels[l];
+    const int below_width = l == 0 ? image.width_px() : levels[l - 1].width;
+    const int below_height = l == 0 ? image.height_px() : levels[l - 1].height;
+    const float* source = l == 0 ? image.data() : texels + levels[l - 1].offset;
+    const int scale = l == 0 ? 1 : 2;
+    const int last = l == 0 ? 3 : 4;
+    for (int j = 0; j < level.height; ++j) {
+      for (int i = 0; i < level.width; ++i) {
+        float best = source[scale * (j * below_width + i)];
+        for (int dj = 0; dj <= last; dj += last - 3 == 0 ? 1 : 4) {
+          for (int di = 0; di <= last; di += last - 3 == 0 ? 1 : 4) {
+            if (scale * i + di < below_width && scale * j + dj < below_height) {
+              best = better(best, source[(scale * j + dj) * below_width + scale * i + di]);
             }
           }
         }
-        texels[levels[l].offset + static_cast<std::uint32_t>(j * levels[l].width + i)] = best;
+        texels[level.offset + static_cast<std::uint32_t>(j * level.width + i)] = best;
       }
     }
   }
@@ -66,16 +70,17 @@ float larger(float a, float b) noexcept { return std::max(a, b); }
 }  // namespace
 
 std::vector<PyramidLevel> pyramid_levels(int width_px, int height_px, std::size_t& total) {
-  std::vector<PyramidLevel> levels{{0, width_px, height_px}};
+  std::vector<PyramidLevel> levels;
   total = 0;
-  for (int size = 1; size < std::max(width_px, height_px);) {
-    size *= 2;
+  for (int size = 1;; size *= 2) {
     const PyramidLevel level{static_cast<std::uint32_t>(total), (width_px + size - 1) / size,
                              (height_px + size - 1) / size};
     total += static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
     levels.push_back(level);
+    if (std::max(level.width, level.height) <= kPyramidSpan) {
+      return levels;
+    }
   }
-  return levels;
 }
 
 View::View(const RigCamera& camera, const CameraMargins& margins, const Policies& policies)

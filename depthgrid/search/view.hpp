@@ -12,17 +12,20 @@
 
 namespace depthgrid::search {
 
-/// Overlapping extrema of an image: texel (i, j) of level L >= 1 covers the pixels [i 2^L, (i + 2) 2^L) x
-/// [j 2^L, (j + 2) 2^L) of the image, so that any rectangle of pixels whose last and first columns (and rows) differ by
-/// at most 2^L is covered by the one texel (first >> L). Level 0 is the image itself.
+/// Overlapping extrema of an image: texel (i, j) of level L covers the pixels [i 2^L, (i + 4) 2^L) x
+/// [j 2^L, (j + 4) 2^L) of the image. So a rectangle of pixels whose last and first texel columns (pixel >> L) differ by
+/// at most 7, and its rows likewise, is covered by four texels, each side with less than 2^L pixels too many.
 struct PyramidLevel {
-  std::uint32_t offset = 0;  ///< of its first texel in the pyramid's buffer; unused at level 0
+  std::uint32_t offset = 0;  ///< of its first texel in the pyramid's buffer
   std::int32_t width = 0;
   std::int32_t height = 0;
 };
 
-/// The levels of an image of this size, level 0 first; the last one is the first whose 2^L reaches both sides.
-/// `total` becomes the number of texels of all levels from 1 on.
+/// Texel columns (or rows) that four texels can cover.
+inline constexpr int kPyramidSpan = 8;
+
+/// The levels of an image of this size; on the last one, the first such, the whole image spans at most kPyramidSpan
+/// texel columns and rows. `total` becomes the number of texels of all levels.
 [[nodiscard]] std::vector<PyramidLevel> pyramid_levels(int width_px, int height_px, std::size_t& total);
 
 /// A prepared image. Buffers are allocated by the constructor; update() does not allocate. Written by one thread,
@@ -47,7 +50,7 @@ class View {
   /// A pixel's frustum is free between the blind zone and this depth: g, and where the pixel's robot interval
   /// [near, far] begins at or before g and ends behind it, that far end (what lies in the interval is the robot).
   [[nodiscard]] const DepthImage& free_m() const noexcept { return free_m_; }
-  /// Minima of free_m(), levels from 1 on.
+  /// Minima of free_m(), all levels.
   [[nodiscard]] const float* minima_m() const noexcept { return minima_m_.data(); }
   [[nodiscard]] const std::vector<PyramidLevel>& levels() const noexcept { return levels_; }
 
@@ -57,7 +60,7 @@ class View {
   /// Per pixel [near, far] of the island; (+inf, -inf) where there is none.
   [[nodiscard]] const DepthImage& island_near_m() const noexcept { return island_near_m_; }
   [[nodiscard]] const DepthImage& island_far_m() const noexcept { return island_far_m_; }
-  /// Maxima of island_near_m() and minima of island_far_m(), levels from 1 on.
+  /// Maxima of island_near_m() and minima of island_far_m(), all levels.
   [[nodiscard]] const float* island_near_maxima_m() const noexcept { return island_near_maxima_m_.data(); }
   [[nodiscard]] const float* island_far_minima_m() const noexcept { return island_far_minima_m_.data(); }
 

@@ -131,8 +131,8 @@ testing::AssertionResult Twin::level(std::size_t l, const DepthImage& image, con
   for (int j = 0; j < level.height; ++j) {
     for (int i = 0; i < level.width; ++i) {
       float expected = image.at(i * size, j * size);
-      for (int v = j * size; v < std::min((j + 2) * size, height_px()); ++v) {
-        for (int u = i * size; u < std::min((i + 2) * size, width_px()); ++u) {
+      for (int v = j * size; v < std::min((j + 4) * size, height_px()); ++v) {
+        for (int u = i * size; u < std::min((i + 4) * size, width_px()); ++u) {
           expected = better(image.at(u, v), expected) ? image.at(u, v) : expected;
         }
       }
@@ -175,10 +175,10 @@ testing::AssertionResult follows_definition(const View& view, const RigCamera& c
   }
   const int largest_side = std::max(twin.width_px(), twin.height_px());
   const std::size_t count = view.levels().size();
-  if ((1 << (count - 1)) < largest_side || (count > 1 && (1 << (count - 2)) >= largest_side)) {
+  if ((8 << (count - 1)) < largest_side || (count > 1 && (8 << (count - 2)) >= largest_side)) {
     return testing::AssertionFailure() << count << " levels";
   }
-  for (std::size_t l = 1; l < count; ++l) {
+  for (std::size_t l = 0; l < count; ++l) {
     if (auto result = twin.level(l, view.free_m(), view.minima_m(), std::less<>()); !result) {
       return result << " (free depth)";
     }
