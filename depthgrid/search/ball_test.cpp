@@ -71,11 +71,7 @@ struct Ball {
     if (level == 0) {
       return meets_pixel(i, j);
     }
-    // The texel one level down covers this block exactly.
-    const PyramidLevel& texels = camera.levels[level - 1];
-    const double smallest_m =
-        level == 1 ? smallest_of_four(i, j)
-                   : static_cast<double>(camera.minima_m[texels.offset + (2 * j) * texels.width + 2 * i]);
+    const double smallest_m = smallest(level, i, j);
     const bool blind = p.z() - radius_m <= camera.near_m;
     if (!blind && !meets(block, smallest_m, kInfinity)) {
       return false;
@@ -91,7 +87,13 @@ struct Ball {
     return false;
   }
 
-  [[nodiscard]] double smallest_of_four(int i, int j) const noexcept {
+  /// The least free depth of a block.
+  [[nodiscard]] double smallest(int level, int i, int j) const noexcept {
+    if (level >= 2) {
+      // The texel two levels down covers this block exactly.
+      const PyramidLevel& texels = camera.levels[level - 2];
+      return static_cast<double>(camera.minima_m[texels.offset + 4 * j * texels.width + 4 * i]);
+    }
     const int last_u = camera.view->width_px() - 1;
     const int last_v = camera.view->height_px() - 1;
     float smallest_m = std::numeric_limits<float>::infinity();
@@ -155,7 +157,7 @@ bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Ve
   const Ball ball{camera, clip, p_camera, radius_m, radius_m * radius_m};
   const int side = std::max(window.u1 - window.u0, window.v1 - window.v0);
   int level = 0;
-  while ((1 << level) < side && level + 1 < camera.level_count) {
+  while ((1 << level) < side && level < camera.level_count + 1) {
     ++level;
   }
   for (int j = window.v0 >> level; j <= window.v1 >> level; ++j) {

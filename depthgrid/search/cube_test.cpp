@@ -82,24 +82,47 @@ HWY_INLINE Rectangle project(const LocalCamera& camera, const Bounds& b, V z_low
           hn::Add(hn::Mul(most(b.y_high), fy), hn::Set(d, camera.cy + camera.guard_px))};
 }
 
-/// The extremum of an image over a rectangle of pixels in each lane.
-template <class Pick>
-HWY_INLINE V extremum(const LocalCamera& camera, const float* image, const float* pyramid, int level, I u0, I u1, I v0,
-                      I v1, Pick pick) {
-  const Floats d;
+/// Rectangles of pixels, one a lane, and the pyramid level that covers all of them with four texels each. Level -1 is the
+/// image itself, for rectangles of at most two by two pixels.
+struct Footprint {
+  I corner_00, corner_01, corner_10, corner_11;  ///< indices into the level
+  int level;
+};
+
+HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1) {
   const Ints di;
-  if (level == 0) {
-    // At most two by two pixels.
+  const int32_t last = hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0))));
+  if (last <= 1) {
     const I width = hn::Set(di, camera.width_px);
     const I row0 = hn::Mul(v0, width);
     const I row1 = hn::Mul(v1, width);
-    return pick(pick(hn::GatherIndex(d, image, hn::Add(row0, u0)), hn::GatherIndex(d, image, hn::Add(row0, u1))),
-                pick(hn::GatherIndex(d, image, hn::Add(row1, u0)), hn::GatherIndex(d, image, hn::Add(row1, u1))));
+    return {hn::Add(row0, u0), hn::Add(row0, u1), hn::Add(row1, u0), hn::Add(row1, u1), -1};
+  }
+  // 6 2^level pixels lie in at most eight texel columns wherever they begin.
+  int level = 0;
+  while ((6 << level) < last) {
+    ++level;
   }
   const PyramidLevel& texels = camera.levels[level];
-  const I index = hn::Add(hn::Mul(hn::ShiftRightSame(v0, level), hn::Set(di, texels.width)),
-                          hn::ShiftRightSame(u0, level));
-  return hn::GatherIndex(d, pyramid + texels.offset, index);
+  const I width = hn::Set(di, texels.width);
+  const I three = hn::Set(di, 3);
+  const I i0 = hn::ShiftRightSame(u0, level);
+  const I j0 = hn::ShiftRightSame(v0, level);
+  const I i1 = hn::Max(i0, hn::Sub(hn::ShiftRightSame(u1, level), three));
+  const I j1 = hn::Max(j0, hn::Sub(hn::ShiftRightSame(v1, level), three));
+  const I row0 = hn::Mul(j0, width);
+  const I row1 = hn::Mul(j1, width);
+  return {hn::Add(row0, i0), hn::Add(row0, i1), hn::Add(row1, i0), hn::Add(row1, i1), level};
+}
+
+/// The extremum of an image over a footprint.
+template <class Pick>
+HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const float* image, const float* pyramid,
+                      Pick pick) {
+  const Floats d;
+  const float* HWY_RESTRICT values = at.level < 0 ? image : pyramid + camera.levels[at.level].offset;
+  return pick(pick(hn::GatherIndex(d, values, at.corner_00), hn::GatherIndex(d, values, at.corner_01)),
+              pick(hn::GatherIndex(d, values, at.corner_10), hn::GatherIndex(d, values, at.corner_11)));
 }
 
 /// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high.
@@ -110,20 +133,17 @@ HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_
   const I u1 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_high));
   const I v0 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_low));
   const I v1 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_high));
-  const int32_t span = hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0))));
-  // The smallest level whose 2^level reaches the span; the coarsest reaches the whole image.
-  const int level = span <= 1 ? 0 : static_cast<int>(std::bit_width(static_cast<std::uint32_t>(span - 1)));
+  const Footprint at = footprint(camera, u0, u1, v0, v1);
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
-  const V free_m = extremum(camera, camera.free_m, camera.minima_m, level, u0, u1, v0, v1, min);
+  const V free_m = extremum(camera, at, camera.free_m, camera.minima_m, min);
   const M seen_free = hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m));
   if (!camera.has_islands) {
     return hn::And(inside, seen_free);
   }
   const View& view = *camera.view;
-  const V near_m =
-      extremum(camera, view.island_near_m().data(), view.island_near_maxima_m(), level, u0, u1, v0, v1, max);
-  const V far_m = extremum(camera, view.island_far_m().data(), view.island_far_minima_m(), level, u0, u1, v0, v1, min);
+  const V near_m = extremum(camera, at, view.island_near_m().data(), view.island_near_maxima_m(), max);
+  const V far_m = extremum(camera, at, view.island_far_m().data(), view.island_far_minima_m(), min);
   const M in_robot = hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m));
   return hn::And(inside, hn::Or(seen_free, in_robot));
 }
@@ -186,30 +206,104 @@ HWY_INLINE M outside_view(const CubeQuery& query, const LocalCamera& camera, con
                        beyond(b.y_low, b.y_high, -camera.cy / camera.fy, (camera.height - camera.cy) / camera.fy)));
 }
 
-/// Lower bound of the distance from the axis to the boxes.
-HWY_INLINE V axis_distance(const CubeQuery& query, const Boxes& boxes) {
+HWY_INLINE V length(V x, V y, V z) {
+  return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+}
+
+HWY_INLINE V clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
+
+/// The axis and the boxes.
+struct Proximities {
+  V distance;             ///< no point of the box is nearer to the axis
+  V near_x, near_y, near_z;  ///< a point of the box: the nearest for a point, roughly the nearest for a segment
+};
+
+HWY_INLINE Proximities proximities(const CubeQuery& query, const Boxes& boxes) {
   const Floats d;
   const V zero = hn::Zero(d);
-  const auto length = [&](V x, V y, V z) HWY_ATTR {
-    return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
-  };
-  if (query.inverse_square == 0) {
-    return length(hn::Max(hn::Sub(hn::Abs(boxes.x), boxes.half_x), zero),
-                  hn::Max(hn::Sub(hn::Abs(boxes.y), boxes.half_y), zero),
-                  hn::Max(hn::Sub(hn::Abs(boxes.z), boxes.half_z), zero));
+  V px = hn::Set(d, query.axis_a[0]);
+  V py = hn::Set(d, query.axis_a[1]);
+  V pz = hn::Set(d, query.axis_a[2]);
+  V off_axis = zero;
+  const bool segment = query.inverse_square != 0;
+  if (segment) {
+    const V ax = hn::Sub(boxes.x, px);
+    const V ay = hn::Sub(boxes.y, py);
+    const V az = hn::Sub(boxes.z, pz);
+    const V t0 = hn::Mul(weighted(query.axis_along, ax, ay, az), hn::Set(d, query.inverse_square));
+    const V t = clamp(t0, zero, hn::Set(d, 1.0F));
+    px = hn::Add(px, hn::Mul(t, hn::Set(d, query.axis_along[0])));
+    py = hn::Add(py, hn::Mul(t, hn::Set(d, query.axis_along[1])));
+    pz = hn::Add(pz, hn::Mul(t, hn::Set(d, query.axis_along[2])));
+    off_axis = length(hn::Sub(boxes.x, px), hn::Sub(boxes.y, py), hn::Sub(boxes.z, pz));
   }
-  const V ax = hn::Sub(boxes.x, hn::Set(d, query.axis_a[0]));
-  const V ay = hn::Sub(boxes.y, hn::Set(d, query.axis_a[1]));
-  const V az = hn::Sub(boxes.z, hn::Set(d, query.axis_a[2]));
-  const V t0 = hn::Mul(weighted(query.axis_along, ax, ay, az), hn::Set(d, query.inverse_square));
-  const V t = hn::Min(hn::Max(t0, zero), hn::Set(d, 1.0F));
-  const V dx = hn::Sub(ax, hn::Mul(t, hn::Set(d, query.axis_along[0])));
-  const V dy = hn::Sub(ay, hn::Mul(t, hn::Set(d, query.axis_along[1])));
-  const V dz = hn::Sub(az, hn::Mul(t, hn::Set(d, query.axis_along[2])));
-  const V distance = length(dx, dy, dz);
-  // Two lower bounds: the ball around the box, and the slab between the box and the axis seen along their distance.
-  const V by_ball = hn::Sub(distance, boxes.half_diagonal);
-  return hn::Max(by_ball, zero);
+  Proximities result;
+  result.near_x = clamp(px, hn::Sub(boxes.x, boxes.half_x), hn::Add(boxes.x, boxes.half_x));
+  result.near_y = clamp(py, hn::Sub(boxes.y, boxes.half_y), hn::Add(boxes.y, boxes.half_y));
+  result.near_z = clamp(pz, hn::Sub(boxes.z, boxes.half_z), hn::Add(boxes.z, boxes.half_z));
+  if (segment) {
+    // The ball around the box: another point of the axis may be nearer to the box than the one nearest to its centre.
+    result.distance = hn::Max(hn::Sub(off_axis, boxes.half_diagonal), zero);
+  } else {
+    result.distance = length(hn::Sub(result.near_x, px), hn::Sub(result.near_y, py), hn::Sub(result.near_z, pz));
+  }
+  return result;
+}
+
+/// Lanes whose point is out of the camera's view or at most slack and reach before a pixel's free depth along the ray.
+HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
+  const Floats d;
+  const Ints di;
+  const V zero = hn::Zero(d);
+  const V x = hn::Add(weighted(camera.rotation, x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
+  const V y = hn::Add(weighted(camera.rotation + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
+  const V z = hn::Add(weighted(camera.rotation + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
+  const V inverse = hn::Div(hn::Set(d, 1.0F), z);
+  const V u = hn::Add(hn::Mul(hn::Mul(x, inverse), hn::Set(d, camera.fx)), hn::Set(d, camera.cx));
+  const V v = hn::Add(hn::Mul(hn::Mul(y, inverse), hn::Set(d, camera.fy)), hn::Set(d, camera.cy));
+  const M in_view = hn::And(hn::And(hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, camera.width))),
+                                    hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, camera.height)))),
+                            hn::Gt(z, hn::Set(d, camera.blind_m)));
+  const I column = hn::ConvertTo(di, hn::IfThenElseZero(in_view, u));
+  const I row = hn::ConvertTo(di, hn::IfThenElseZero(in_view, v));
+  const V free_m = hn::GatherIndex(d, camera.free_m, hn::Add(hn::Mul(row, hn::Set(di, camera.width_px)), column));
+  const V range = length(x, y, z);
+  V slack = hn::Set(d, slack_m);
+  if (camera.has_reach) {
+    slack = hn::Add(slack, hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range)));
+  }
+  const M near = hn::Le(hn::Mul(hn::Sub(free_m, z), range), hn::Mul(slack, z));
+  return hn::Or(hn::Not(in_view), near);
+}
+
+/// Lanes of `open` that stay open after every camera has been asked.
+HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
+  const Floats d;
+  const V zero = hn::Zero(d);
+  M uncovered = query.uncovered_ignored ? open : hn::Lt(zero, zero);
+  for (std::size_t n = 0; n < query.camera_count; ++n) {
+    const std::uint8_t k = query.order[n];
+    const LocalCamera& camera = query.cameras[k];
+    const Bounds bounds = bounds_in(camera, boxes);
+    M gone = freed_whole(camera, bounds);
+    if (query.principal == static_cast<int>(k)) {
+      gone = hn::Or(gone, outside_view(query, camera, bounds));
+    }
+    if (camera.space.to_view) {
+      gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds));
+    }
+    if (query.uncovered_ignored) {
+      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, bounds));
+    }
+    open = hn::AndNot(gone, open);
+    if (hn::AllFalse(d, open)) {
+      // This camera sees what the others do not: ask it first from now on.
+      query.order[n] = query.order[0];
+      query.order[0] = k;
+      return open;
+    }
+  }
+  return hn::AndNot(uncovered, open);
 }
 
 void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound_m, Children& children) {
@@ -217,17 +311,12 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
   const V zero = hn::Zero(d);
   const V half = hn::Set(d, half_m);
   children.count = 0;
+  children.touching = 0;
   for (std::size_t first = 0; first < 8; first += hn::Lanes(d)) {
-    Boxes boxes{hn::Add(hn::Set(d, parent.x), hn::Mul(hn::Load(d, kSignX + first), half)),
-                hn::Add(hn::Set(d, parent.y), hn::Mul(hn::Load(d, kSignY + first), half)),
-                hn::Add(hn::Set(d, parent.z), hn::Mul(hn::Load(d, kSignZ + first), half)),
-                half,
-                half,
-                half,
-                hn::Set(d, half_m * 1.7320509F)};
-    const V x = boxes.x;
-    const V y = boxes.y;
-    const V z = boxes.z;
+    const V x = hn::Add(hn::Set(d, parent.x), hn::Mul(hn::Load(d, kSignX + first), half));
+    const V y = hn::Add(hn::Set(d, parent.y), hn::Mul(hn::Load(d, kSignY + first), half));
+    const V z = hn::Add(hn::Set(d, parent.z), hn::Mul(hn::Load(d, kSignZ + first), half));
+    Boxes boxes{x, y, z, half, half, half, hn::Set(d, half_m * 1.7320509F)};
     M open = hn::Eq(zero, zero);
     if (query.boxed) {
       const auto cut = [&](V& centre, V& half_side, float low, float high) HWY_ATTR {
@@ -236,43 +325,30 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
         open = hn::And(open, hn::Le(from, to));
         centre = hn::Mul(hn::Add(from, to), hn::Set(d, 0.5F));
         // A little larger: the centre has been rounded.
-        half_side = hn::Add(hn::Mul(hn::Sub(to, from), hn::Set(d, 0.5F)), hn::Set(d, 5e-7F));
+        half_side = hn::Add(hn::Mul(hn::Sub(to, from), hn::Set(d, 0.5F)), hn::Set(d, 1e-6F));
       };
       cut(boxes.x, boxes.half_x, query.box_low[0], query.box_high[0]);
       cut(boxes.y, boxes.half_y, query.box_low[1], query.box_high[1]);
       cut(boxes.z, boxes.half_z, query.box_low[2], query.box_high[2]);
     }
-    const V distance = axis_distance(query, boxes);
-    open = hn::And(open, hn::Lt(distance, hn::Set(d, bound_m)));
-    M uncovered = query.uncovered_ignored ? open : hn::Lt(zero, zero);
-    for (std::size_t n = 0; n < query.camera_count && !hn::AllFalse(d, open); ++n) {
-      const std::uint8_t k = query.order[n];
-      const LocalCamera& camera = query.cameras[k];
-      const Bounds bounds = bounds_in(camera, boxes);
-      M gone = freed_whole(camera, bounds);
-      if (query.principal == static_cast<int>(k)) {
-        gone = hn::Or(gone, outside_view(query, camera, bounds));
-      }
-      if (camera.space.to_view) {
-        gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds));
-      }
-      if (query.uncovered_ignored) {
-        uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, bounds));
-      }
-      const M rest = hn::AndNot(gone, open);
-      if (n > 0 && hn::AllFalse(d, rest)) {
-        // This camera sees what the others do not: ask it first from now on.
-        query.order[n] = query.order[0];
-        query.order[0] = k;
-      }
-      open = rest;
-    }
-    open = hn::AndNot(uncovered, open);
+    const Proximities near = proximities(query, boxes);
+    open = hn::And(open, hn::Lt(near.distance, hn::Set(d, bound_m)));
     if (hn::AllFalse(d, open)) {
       continue;
     }
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, open, bits);
+    open = not_freed(query, boxes, open);
+    if (hn::AllFalse(d, open)) {
+      continue;
+    }
+    M touching = open;
+    for (std::size_t n = 0; n < query.camera_count && !hn::AllFalse(d, touching); ++n) {
+      const LocalCamera& camera = query.cameras[query.order[n]];
+      touching = hn::And(touching, touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
+    }
+    std::uint8_t open_bits[8] = {};
+    std::uint8_t touching_bits[8] = {};
+    hn::StoreMaskBits(d, open, open_bits);
+    hn::StoreMaskBits(d, touching, touching_bits);
     alignas(64) float xs[8];
     alignas(64) float ys[8];
     alignas(64) float zs[8];
@@ -280,9 +356,10 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
     hn::Store(x, d, xs);
     hn::Store(y, d, ys);
     hn::Store(z, d, zs);
-    hn::Store(distance, d, distances);
-    for (unsigned rest = bits[0]; rest != 0; rest &= rest - 1) {
+    hn::Store(near.distance, d, distances);
+    for (unsigned rest = open_bits[0]; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
+      children.touching |= ((touching_bits[0] >> i) & 1U) << children.count;
       children.cubes[static_cast<std::size_t>(children.count++)] = {xs[i], ys[i], zs[i], distances[i],
                                                                     parent.level + 1};
     }

@@ -15,9 +15,9 @@ struct CubeQuery {
   std::size_t camera_count = 0;
   std::array<std::uint8_t, kMostCameras> order{};  ///< in which cameras are asked; the last that freed cubes is first
 
-  float axis_a[3];          ///< the primitive's axis from a to a + along
+  float axis_a[3];           ///< the primitive's axis from a to a + along
   float axis_along[3];
-  float inverse_square = 0;  ///< 1 / |along|^2; 0 for a point, which lies at the origin
+  float inverse_square = 0;  ///< 1 / |along|^2; 0 for a point
 
   bool boxed = false;  ///< W is a box that the primitive's surroundings leave
   float box_low[3];    ///< rounded outwards
@@ -26,12 +26,16 @@ struct CubeQuery {
   float d_min_m = 0;
   float d_max_m = 0;
   bool uncovered_ignored = false;  ///< what no camera covers does not count
+  float slack_m = 0;               ///< how near to a camera's not-free set the nearest point of an answer has to lie
 };
 
-/// Children of a cube that may hold an obstacle nearer than the bound, to the left of `count`.
+/// Children of a cube that may hold an obstacle nearer than the bound.
 struct Children {
   std::array<Cube, 8> cubes;
   int count = 0;
+  /// Bit i: in each camera, the point of cube i that is nearest to the axis seems to be no farther than slack and reach
+  /// from not-free space, measured along the ray. A hint: single precision, and islands are not looked at.
+  std::uint32_t touching = 0;
 };
 
 /// Splits `parent`, whose children have this half side, and keeps the children that lie nearer than bound_m to the axis

@@ -14,15 +14,74 @@ constexpr double kSqrt3 = 1.7320508075688772;
 constexpr double kBorderResolution = 0.5e-3;
 /// The clock is read once in so many cubes.
 constexpr int kClockInterval = 64;
+/// Primitives this near to each other share an origin, metres. Single precision resolves a micrometre there.
+constexpr double kSharedExtent = 4.0;
 
 float rounded_down(double value) noexcept { return std::nextafter(static_cast<float>(value), -1e30F); }
 float rounded_up(double value) noexcept { return std::nextafter(static_cast<float>(value), 1e30F); }
 
+bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camera) noexcept {
+  const DepthPoint pixel = project(camera, x_camera);
+  return pixel.x_px >= 0 && pixel.y_px >= 0 && pixel.x_px < camera.width_px && pixel.y_px < camera.height_px;
+}
+
+/// x lies in the camera's not-free set, or at most slack and reach before its pixel's free depth along the ray.
+bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
+  const Eigen::Vector3d x = camera.to_camera(x_local);
+  if (!(x.z() > camera.near_m) || !projects_inside(camera.pinhole, x)) {
+    return true;
+  }
+  const DepthPoint pixel = project(camera.pinhole, x);
+  const auto u = static_cast<int>(pixel.x_px);
+  const auto v = static_cast<int>(pixel.y_px);
+  const auto free_m = static_cast<double>(camera.view->free_m().at(u, v));
+  if (x.z() >= free_m) {
+    // In the robot's island it is the robot.
+    return !camera.has_islands || !(x.z() >= static_cast<double>(camera.view->island_near_m().at(u, v)) &&
+                                    x.z() <= static_cast<double>(camera.view->island_far_m().at(u, v)));
+  }
+  const double slack_along_m = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
+  return (free_m - x.z()) * x.norm() <= slack_along_m * x.z();
+}
+
 }  // namespace
 
+Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
+    : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
+  query_.camera_count = snapshot.camera_count();
+  query_.uncovered_ignored = settings_.policies.unobserved == Policy::ignored;
+  query_.slack_m = rounded_down(settings_.resolution_m - 1e-5);
+  least_reach_m_ = 1e30;
+  for (std::size_t k = 0; k < query_.camera_count; ++k) {
+    const PoseMargin& e = snapshot.pose_margin(k);
+    const double reach_m = e.translation_m + e.time_m;
+    has_reach_ = has_reach_ || reach_m > 0 || e.rotation_rad > 0;
+    least_reach_m_ = std::min(least_reach_m_, reach_m);
+    largest_rate_ = std::max(largest_rate_, e.rotation_rad);
+  }
+  // What keeps a camera from freeing a cube lies in the cube's bounds in that camera's frame, whose diagonal is at most
+  // sqrt(3) times the cube's. With reach those bounds are grown to all sides, so the last word is a ball's; e_k varies by
+  // less than rate * diagonal within a cube.
+  const double leaf_diagonal_m =
+      has_reach_ ? (settings_.resolution_m - 2e-5) / (1 + largest_rate_) : (settings_.resolution_m - 5e-5) / kSqrt3;
+  leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
+}
+
+void Descent::set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept {
+  origin_world_ = origin_world;
+  extent_m_ = extent_m;
+  for (std::size_t k = 0; k < query_.camera_count; ++k) {
+    make_local(snapshot_, k, origin_world, extent_m, query_.cameras[k]);
+  }
+}
+
 void Descent::aim(const Primitive& primitive, double reach_m) noexcept {
-  primitive_ = primitive;
-  origin_world_ = 0.5 * (primitive.a_world + primitive.b_world);
+  radius_m_ = primitive.radius_m;
+  const Eigen::Vector3d middle_world = 0.5 * (primitive.a_world + primitive.b_world);
+  const double around_m = 0.5 * (primitive.b_world - primitive.a_world).cwiseAbs().maxCoeff() + reach_m;
+  if (!((middle_world - origin_world_).cwiseAbs().maxCoeff() + 8 * around_m <= extent_m_)) {
+    set_origin(middle_world, kSharedExtent + 8 * around_m);
+  }
   a_local_ = primitive.a_world - origin_world_;
   b_local_ = primitive.b_world - origin_world_;
   const Eigen::Vector3d along = b_local_ - a_local_;
@@ -33,39 +92,38 @@ void Descent::aim(const Primitive& primitive, double reach_m) noexcept {
   }
   query_.inverse_square = square > 1e-12 ? static_cast<float>(1 / square) : 0.0F;
 
-  const double half_m = a_local_.cwiseAbs().maxCoeff() + reach_m;
-  double largest_rate = 0;
-  double least_reach_m = 1e30;
-  query_.camera_count = snapshot_.camera_count();
-  for (std::size_t k = 0; k < query_.camera_count; ++k) {
-    make_local(snapshot_, k, origin_world_, half_m, query_.cameras[k]);
-    largest_rate = std::max(largest_rate, query_.cameras[k].pose_margin.rotation_rad);
-    const LocalCamera& camera = query_.cameras[k];
-    least_reach_m = std::min(least_reach_m, camera.has_reach ? static_cast<double>(camera.reach_m) : 0.0);
+  // The root's side is the leaf's times a power of two. The axis' middle lies at a third of it along each axis, and so at
+  // a third or two thirds of every cube that holds it: never near the faces, where eight cubes of each level would meet.
+  double root_half_m = leaf_half_m_;
+  leaf_level_ = 0;
+  while (2 * root_half_m < 3 * around_m && leaf_level_ + 12 < static_cast<int>(kLevels)) {
+    root_half_m *= 2;
+    ++leaf_level_;
   }
-  // e_k varies by less than rate * diagonal within a cube.
-  const double leaf_diagonal_m = (settings_.resolution_m - 2e-6) / (1 + largest_rate);
-  double half = half_m;
-  leaf_level_ = -1;
-  last_level_ = -1;
-  for (std::size_t level = 0; level < kLevels; ++level, half *= 0.5) {
-    half_m_[level] = static_cast<float>(half);
-    if (leaf_level_ < 0 && 2 * kSqrt3 * half <= leaf_diagonal_m) {
-      leaf_level_ = static_cast<int>(level);
-    }
-    if (leaf_level_ >= 0 && last_level_ < 0 && 2 * kSqrt3 * half <= std::min(leaf_diagonal_m, kBorderResolution)) {
-      last_level_ = static_cast<int>(level);
-    }
+  const Eigen::Vector3d root = middle_world - origin_world_ + Eigen::Vector3d::Constant(root_half_m / 3);
+  root_ = {static_cast<float>(root.x()), static_cast<float>(root.y()), static_cast<float>(root.z()), 0.0F, 0};
+  double half_m = root_half_m;
+  for (float& half : half_m_) {
+    half = static_cast<float>(half_m);
+    half_m *= 0.5;
   }
-  exact_below_m_ = static_cast<float>(least_reach_m);
+  last_level_ = leaf_level_;
+  while (2 * kSqrt3 * static_cast<double>(half_side_m(last_level_)) > kBorderResolution &&
+         last_level_ + 1 < static_cast<int>(kLevels)) {
+    ++last_level_;
+  }
+  exact_level_ = leaf_level_;
+  while (exact_level_ > 0 && static_cast<double>(half_side_m(exact_level_ - 1)) <= least_reach_m_) {
+    --exact_level_;
+  }
 
   query_.boxed = false;
   query_.principal = -1;
-  query_.uncovered_ignored = settings_.policies.unobserved == Policy::ignored;
   if (const auto* box = std::get_if<BoxSpace>(&settings_.space)) {
     space_low_ = box->low_world - origin_world_;
     space_high_ = box->high_world - origin_world_;
-    query_.boxed = (space_low_.array() > -half_m).any() || (space_high_.array() < half_m).any();
+    const Eigen::Vector3d middle = middle_world - origin_world_;
+    query_.boxed = ((space_low_ - middle).array() > -around_m).any() || ((space_high_ - middle).array() < around_m).any();
     for (int i = 0; i < 3; ++i) {
       query_.box_low[i] = rounded_down(space_low_(i));
       query_.box_high[i] = rounded_up(space_high_(i));
@@ -89,30 +147,6 @@ Descent::Box Descent::box_of(const Cube& cube) const noexcept {
   return box;
 }
 
-bool Descent::blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) const noexcept {
-  const Eigen::Vector3d x = camera.to_camera(x_local);
-  if (!(x.z() > camera.near_m)) {
-    return true;
-  }
-  const DepthPoint pixel = project(camera.pinhole, x);
-  if (!(pixel.x_px >= 0 && pixel.y_px >= 0 && pixel.x_px < camera.pinhole.width_px &&
-        pixel.y_px < camera.pinhole.height_px)) {
-    return true;
-  }
-  const auto u = static_cast<int>(pixel.x_px);
-  const auto v = static_cast<int>(pixel.y_px);
-  const auto free_m = static_cast<double>(camera.view->free_m().at(u, v));
-  if (x.z() >= free_m) {
-    // In the robot's island it is the robot.
-    return !camera.has_islands || !(x.z() >= static_cast<double>(camera.view->island_near_m().at(u, v)) &&
-                                    x.z() <= static_cast<double>(camera.view->island_far_m().at(u, v)));
-  }
-  // Along the ray the obstacle begins at free_m.
-  const double slack_along_m = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
-  const double gap_m = free_m - x.z();
-  return gap_m < slack_along_m && gap_m * x.norm() <= slack_along_m * x.z();
-}
-
 bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
   if (query_.principal < 0) {
     return true;  // boxes are cut to W
@@ -120,113 +154,127 @@ bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
   const LocalCamera& camera = query_.cameras[static_cast<std::size_t>(query_.principal)];
   const auto& frustum = std::get<FrustumSpace>(settings_.space);
   const Eigen::Vector3d x = camera.to_camera(x_local);
-  if (!(x.z() > 0 && x.z() >= frustum.d_min_m && x.z() <= frustum.d_max_m)) {
-    return false;
-  }
-  const DepthPoint pixel = project(camera.pinhole, x);
-  return pixel.x_px >= 0 && pixel.y_px >= 0 && pixel.x_px < camera.pinhole.width_px &&
-         pixel.y_px < camera.pinhole.height_px;
+  return x.z() > 0 && x.z() >= frustum.d_min_m && x.z() <= frustum.d_max_m && projects_inside(camera.pinhole, x);
 }
 
-bool Descent::is_blocked(const Eigen::Vector3d& x_local, double slack_m) noexcept {
+/// Every camera has x in its not-free set, or nearly so along the ray, and x counts.
+bool Descent::is_blocked(const Eigen::Vector3d& x_local) const noexcept {
   bool covered = !query_.uncovered_ignored;
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
-    if (!blocks(camera, x_local, slack_m)) {
+    if (!blocks(camera, x_local, settings_.resolution_m - 1e-5)) {
       return false;
     }
     if (!covered) {
       const Eigen::Vector3d x = camera.to_camera(x_local);
-      const DepthPoint pixel = project(camera.pinhole, x);
-      covered = x.z() > camera.near_m && pixel.x_px >= 0 && pixel.y_px >= 0 &&
-                pixel.x_px < camera.pinhole.width_px && pixel.y_px < camera.pinhole.height_px;
+      covered = x.z() > camera.near_m && projects_inside(camera.pinhole, x);
     }
   }
   return covered && in_space(x_local);
 }
 
-/// Some camera frees the ball around the box with all its reach; or what is covered of the ball is free everywhere.
-bool Descent::is_free(const Box& box) noexcept {
-  const Eigen::Vector3d centre = box.centre();
-  const double half_diagonal_m = 0.5 * (box.high - box.low).norm() + 1e-9;
+/// Some camera frees the ball around the cube with all its reach; or all that is covered of the ball is free.
+bool Descent::is_free(const Cube& cube) noexcept {
+  const Box box = box_of(cube);
+  const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
+  const double half_diagonal_m = 0.5 * (box.high - box.low).norm() + 1e-7;
   bool uncovered = query_.uncovered_ignored;
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
     const Eigen::Vector3d c = camera.to_camera(centre);
-    const double reach_m =
-        camera.has_reach ? camera.reach(c) + camera.pose_margin.rotation_rad * half_diagonal_m + 1e-9 : 0.0;
+    const double reach_m = camera.has_reach ? camera.reach(c) + largest_rate_ * half_diagonal_m : 0.0;
     ++count_.ball_tests;
     if (!meets_not_free(camera, camera.space, c, half_diagonal_m + reach_m)) {
       return true;
     }
-    if (uncovered) {
-      uncovered = camera.has_reach ? false : !meets_not_free(camera, camera.coverage, c, half_diagonal_m);
-    }
+    uncovered = uncovered && !camera.has_reach && !meets_not_free(camera, camera.coverage, c, half_diagonal_m);
   }
   return uncovered;
 }
 
-Descent::Verdict Descent::judge(const Cube& cube, const Box& box, const Eigen::Vector3d& nearest_local) noexcept {
-  if (is_blocked(nearest_local, settings_.resolution_m - 1e-5)) {
-    return Verdict::obstacle;
+bool Descent::is_leaf(const Cube& cube) noexcept {
+  if (cube.level < leaf_level_) {
+    return false;
   }
-  const bool leaf = cube.level >= leaf_level_;
-  if (!leaf && !(half_side_m(cube.level) <= exact_below_m_)) {
-    return Verdict::undecided;
+  if (cube.level >= last_level_ || query_.principal < 0) {
+    return true;
   }
-  if (is_free(box)) {
-    return Verdict::free;
+  const Box box = box_of(cube);
+  return in_space(nearest(a_local_, b_local_, box.low, box.high).in_box);
+}
+
+/// The nearest point of the cube becomes the answer if it is nearer than what was found before.
+void Descent::offer(const Cube& cube, Nearest& best) noexcept {
+  const Box box = box_of(cube);
+  const AxisToBox pair = nearest(a_local_, b_local_, box.low, box.high);
+  if (pair.distance_m < best.distance_m) {
+    best = {pair.distance_m, true, false, pair.on_axis, pair.in_box};
   }
-  return leaf && (cube.level >= last_level_ || in_space(nearest_local)) ? Verdict::obstacle : Verdict::undecided;
+}
+
+/// Opens what split() has left over, or makes it the answer.
+void Descent::take(const Children& children, Nearest& best) noexcept {
+  for (int i = 0; i < children.count; ++i) {
+    const Cube& child = children.cubes[static_cast<std::size_t>(i)];
+    if (static_cast<double>(child.distance_m) >= best.distance_m) {
+      continue;
+    }
+    if (((children.touching >> i) & 1U) != 0) {
+      const Box box = box_of(child);
+      const AxisToBox pair = nearest(a_local_, b_local_, box.low, box.high);
+      if (is_blocked(pair.in_box)) {
+        offer(child, best);
+        continue;
+      }
+    }
+    if (has_reach_ && child.level >= exact_level_ && is_free(child)) {
+      continue;
+    }
+    if (is_leaf(child)) {
+      offer(child, best);
+    } else if (!frontier_.push(child)) {
+      // No room: what is not looked at bounds the answer.
+      best.stopped = true;
+      best.distance_m = std::min(best.distance_m, static_cast<double>(child.distance_m));
+    }
+  }
 }
 
 Nearest Descent::find(double limit_m, Allowance& allowance) noexcept {
-  Nearest result;
-  result.distance_m = limit_m;
+  Nearest best;
+  best.distance_m = limit_m;
   frontier_.reset(static_cast<float>(limit_m));
-  static_cast<void>(frontier_.push(root()));
+  const Eigen::Vector3d middle = 0.5 * (a_local_ + b_local_);
+  if (is_blocked(middle)) {
+    return {0.0, true, false, middle, middle};
+  }
+  static_cast<void>(frontier_.push(root_));
   Cube cube{};
   Children children;
   int until_clock = kClockInterval;
   while (frontier_.pop(cube)) {
-    if (static_cast<double>(cube.distance_m) >= result.distance_m) {
+    if (static_cast<double>(cube.distance_m) >= best.distance_m) {
       continue;
     }
-    const bool late = allowance.timed && --until_clock == 0 && std::chrono::steady_clock::now() >= allowance.deadline;
-    if (late || allowance.nodes <= 0) {
-      result.stopped = true;
-      result.distance_m = std::min(result.distance_m, static_cast<double>(frontier_.lower_bound_m()));
-      return result;
+    if (best.distance_m <= radius_m_ && best.found) {
+      break;  // it touches the primitive
     }
-    until_clock = until_clock == 0 ? kClockInterval : until_clock;
+    bool late = allowance.nodes <= 0;
+    if (allowance.timed && --until_clock == 0) {
+      until_clock = kClockInterval;
+      late = late || std::chrono::steady_clock::now() >= allowance.deadline;
+    }
+    if (late) {
+      best.stopped = true;
+      best.distance_m = std::min(best.distance_m, static_cast<double>(frontier_.lower_bound_m()));
+      break;
+    }
     --allowance.nodes;
     ++count_.nodes;
-    const Box box = box_of(cube);
-    const AxisToBox nearest_pair = nearest(a_local_, b_local_, box.low, box.high);
-    const Verdict verdict = judge(cube, box, nearest_pair.in_box);
-    if (verdict == Verdict::obstacle) {
-      if (nearest_pair.distance_m < result.distance_m) {
-        result = {nearest_pair.distance_m, true, false, nearest_pair.on_axis, nearest_pair.in_box};
-        if (result.distance_m <= primitive_.radius_m) {
-          return result;
-        }
-      }
-      continue;
-    }
-    if (verdict == Verdict::free) {
-      continue;
-    }
-    split(query_, cube, half_side_m(cube.level + 1), rounded_up(result.distance_m), children);
-    for (int i = 0; i < children.count; ++i) {
-      const Cube& child = children.cubes[static_cast<std::size_t>(i)];
-      if (!frontier_.push(child)) {
-        // No room: what is not looked at bounds the answer.
-        result.stopped = true;
-        result.distance_m = std::min(result.distance_m, static_cast<double>(child.distance_m));
-      }
-    }
+    split(query_, cube, half_side_m(cube.level + 1), rounded_up(best.distance_m), children);
+    take(children, best);
   }
-  return result;
+  return best;
 }
 
 }  // namespace depthgrid::search

@@ -28,13 +28,12 @@ struct Nearest {
   Eigen::Vector3d in_obstacle = Eigen::Vector3d::Zero();
 };
 
-/// One primitive and what it is searched in.
+/// The search on one snapshot, for one primitive after the other.
 class Descent {
  public:
-  Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
-      : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {}
+  Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept;
 
-  /// Makes everything relative to the middle of the primitive's axis. `reach_m`: how far from the axis is of interest.
+  /// Makes everything relative to a place near the primitive. `reach_m`: how far from the axis is of interest.
   void aim(const Primitive& primitive, double reach_m) noexcept;
 
   /// Nearest obstacle within limit_m (at most what aim() was told) of the axis; with a radius, any obstacle within it
@@ -43,40 +42,41 @@ class Descent {
 
   [[nodiscard]] const Eigen::Vector3d& origin_world() const noexcept { return origin_world_; }
 
-  // For the hybrid direction's walk over the same octree.
-  [[nodiscard]] Cube root() const noexcept { return {0, 0, 0, 0, 0}; }
-  [[nodiscard]] float half_side_m(int level) const noexcept { return half_m_[static_cast<std::size_t>(level)]; }
-  /// x lies in O as far as the pixels that x projects to tell: every camera has it behind its free depth (up to
-  /// slack_m along the ray) or out of its view.
-  [[nodiscard]] bool is_blocked(const Eigen::Vector3d& x_local, double slack_m) noexcept;
-
  private:
   struct Box {
     Eigen::Vector3d low, high;
-    [[nodiscard]] Eigen::Vector3d centre() const { return 0.5 * (low + high); }
   };
-  enum class Verdict : std::uint8_t { free, undecided, obstacle };
 
+  void set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept;
   [[nodiscard]] Box box_of(const Cube& cube) const noexcept;
-  [[nodiscard]] bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) const noexcept;
+  [[nodiscard]] float half_side_m(int level) const noexcept { return half_m_[static_cast<std::size_t>(level)]; }
+  [[nodiscard]] bool is_blocked(const Eigen::Vector3d& x_local) const noexcept;
   [[nodiscard]] bool in_space(const Eigen::Vector3d& x_local) const noexcept;
-  [[nodiscard]] bool is_free(const Box& box) noexcept;
-  [[nodiscard]] Verdict judge(const Cube& cube, const Box& box, const Eigen::Vector3d& nearest_local) noexcept;
+  [[nodiscard]] bool is_free(const Cube& cube) noexcept;
+  [[nodiscard]] bool is_leaf(const Cube& cube) noexcept;
+  void offer(const Cube& cube, Nearest& best) noexcept;
+  void take(const Children& children, Nearest& best) noexcept;
 
   const Snapshot& snapshot_;
   const Settings& settings_;
   CubeQuery& query_;
   Frontier& frontier_;
   Count& count_;
-  Primitive primitive_;
-  Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
+  double radius_m_ = 0;
+  Eigen::Vector3d origin_world_;
+  double extent_m_ = -1;  ///< how far from the origin the cameras' single-precision guards hold
   Eigen::Vector3d a_local_, b_local_;
   Eigen::Vector3d space_low_, space_high_;
-  static constexpr std::size_t kLevels = 40;
+  Cube root_{};
+  static constexpr std::size_t kLevels = 64;
   std::array<float, kLevels> half_m_{};
-  int leaf_level_ = 0;        ///< cubes of this level have a diagonal within the resolution
-  int last_level_ = 0;        ///< where the border of W runs through a cube, it is split down to this level
-  float exact_below_m_ = 0;   ///< half side from which on balls are tested, not boxes, because of the cameras' reach
+  bool has_reach_ = false;   ///< of some camera
+  double largest_rate_ = 0;  ///< of the cameras' reach with range
+  double leaf_half_m_ = 0;
+  double least_reach_m_ = 0;
+  int leaf_level_ = 0;       ///< cubes of this level are not split any further
+  int last_level_ = 0;       ///< but where the border of a frustum W runs through one it is split down to this level
+  int exact_level_ = 0;      ///< from this level on a ball is tested too, not only a box, because of the cameras' reach
 };
 
 }  // namespace depthgrid::search

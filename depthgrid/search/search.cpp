@@ -27,16 +27,16 @@ struct Search::State {
     std::iota(query.order.begin(), query.order.end(), std::uint8_t{0});
   }
 
-  void answer(const Snapshot& snapshot, const Primitive& primitive, Allowance& allowance, Answer& result,
-              Count& count) noexcept;
+  static void answer(const Snapshot& snapshot, const Primitive& primitive, Descent& descent, Allowance& allowance,
+                     Answer& result) noexcept;
 
   Settings settings;
   CubeQuery query;
   Frontier frontier;
 };
 
-void Search::State::answer(const Snapshot& snapshot, const Primitive& primitive, Allowance& allowance, Answer& result,
-                           Count& count) noexcept {
+void Search::State::answer(const Snapshot& snapshot, const Primitive& primitive, Descent& descent,
+                           Allowance& allowance, Answer& result) noexcept {
   result = Answer{};
   if (!is_valid(primitive)) {
     return;
@@ -66,7 +66,6 @@ void Search::State::answer(const Snapshot& snapshot, const Primitive& primitive,
   }
   const double reach_m = s.rho_m + primitive.radius_m;
   const bool border_bounds = outside_counts && border.distance_m < reach_m;
-  Descent descent(snapshot, query, frontier, count);
   descent.aim(primitive, reach_m);
   const Nearest found = descent.find(border_bounds ? border.distance_m : reach_m, allowance);
   nearest.budget = found.stopped;
@@ -110,12 +109,13 @@ void Search::distances(const Snapshot& snapshot, std::span<const Primitive> prim
                          std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                              std::chrono::duration<double>(std::min(budget.time_s, 1e6)));
   }
+  Descent descent(snapshot, state_->query, state_->frontier, counted);
   const std::size_t both = std::min(primitives.size(), answers.size());
   for (std::size_t i = 0; i < both; ++i) {
     // What the primitives before have left is shared evenly by the rest.
     const auto share = nodes_left / static_cast<std::int64_t>(both - i);
     allowance.nodes = share;
-    state_->answer(snapshot, primitives[i], allowance, answers[i], counted);
+    State::answer(snapshot, primitives[i], descent, allowance, answers[i]);
     nodes_left -= share - allowance.nodes;
   }
   for (std::size_t i = both; i < answers.size(); ++i) {
