@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "depthgrid/app/sensor_preset.hpp"
+#include "depthgrid/core/sensor_models.hpp"
 
 namespace depthgrid::bench {
 
@@ -83,7 +83,7 @@ std::vector<Setting> ball_settings() {
   settings[1].evaluation.variant = grid::Variant::corrected;
   settings[2] = settings[1];
   settings[2].name = "corrected, Kinect margins";
-  settings[2].evaluation.sensor = app::sensor_preset("kinect-v1").margin;
+  settings[2].evaluation.sensor = sensor_model("kinect_v1").margin;
   settings[3] = settings[2];
   settings[3].name = "corrected, Kinect margins, e = 3 cm";
   settings[3].evaluation.pose.translation_m = 0.03;

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <vector>
 
-#include "depthgrid/app/sensor_preset.hpp"
+#include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/grid/evaluation.hpp"
 #include "depthgrid/input/recording.hpp"
 #include "recordings/ball_track.hpp"
@@ -38,7 +38,7 @@ grid::EvaluationSettings settings_of(int which) {
   settings.rho_m = kRho_m;
   settings.variant = which == 0 ? grid::Variant::letter : grid::Variant::corrected;
   if (which == 2) {
-    settings.sensor = app::sensor_preset("kinect-v1").margin;
+    settings.sensor = sensor_model("kinect_v1").margin;
   }
   return settings;
 }

@@ -75,13 +75,15 @@ struct AnswerWriter::Row {
   bool stale = false;
   bool budget = false;
   std::string known_to_m;
-  bool hybrid = false;
   Texts hybrid_direction;
   std::int64_t obstacle_points = 0;
+  std::string radius_m;
+  Texts end;
+  Texts on_axis;
 };
 
-AnswerWriter::AnswerWriter(AnswerFormat format, const Rig& rig, Pose T_output_world, bool hybrid)
-    : format_(format), rig_(rig), T_output_world_(std::move(T_output_world)), hybrid_(hybrid) {}
+AnswerWriter::AnswerWriter(AnswerFormat format, const Rig& rig, Pose T_output_world, const AnswerColumns& columns)
+    : format_(format), rig_(rig), T_output_world_(std::move(T_output_world)), columns_(columns) {}
 
 std::string AnswerWriter::header() const {
   if (format_ == AnswerFormat::json_lines) {
@@ -90,11 +92,13 @@ std::string AnswerWriter::header() const {
   return std::string(
              "frame,time_s,point,x_m,y_m,z_m,distance_m,state,camera,nearest_x_m,nearest_y_m,nearest_z_m,"
              "direction_x,direction_y,direction_z,stale,budget,known_to_m") +
-         (hybrid_ ? ",hybrid_x,hybrid_y,hybrid_z,obstacle_points\n" : "\n");
+         (columns_.hybrid_direction ? ",hybrid_x,hybrid_y,hybrid_z" : "") +
+         (columns_.obstacle_points ? ",obstacle_points" : "") +
+         (columns_.shapes ? ",radius_m,end_x_m,end_y_m,end_z_m,on_axis_x_m,on_axis_y_m,on_axis_z_m\n" : "\n");
 }
 
 std::string AnswerWriter::line(int frame, std::optional<double> time_s, const input::ControlPoint& point,
-                               const grid::Evaluation& answer) const {
+                               const PointAnswer& answer) const {
   const Proximity& nearest = answer.nearest;
   Row row;
   row.frame = frame;
@@ -109,25 +113,33 @@ std::string AnswerWriter::line(int frame, std::optional<double> time_s, const in
   row.stale = nearest.stale;
   row.budget = nearest.budget;
   row.known_to_m = micro_text_down(nearest.known_to_m);
-  row.hybrid = hybrid_;
   row.hybrid_direction = Texts::of(T_output_world_.linear() * answer.hybrid_direction_world, micro_text);
   row.obstacle_points = answer.obstacle_points;
+  row.radius_m = exact_text(point.radius_m);
+  row.end = point.end_m ? Texts::of(*point.end_m, exact_text) : Texts{};
+  row.on_axis = Texts::of(T_output_world_ * answer.on_axis_world, micro_text);
   return format_ == AnswerFormat::csv ? csv(row) : json(row);
 }
 
-std::string AnswerWriter::csv(const Row& row) {
+std::string AnswerWriter::csv(const Row& row) const {
   const auto yes = [](bool value) { return value ? "true" : "false"; };
   std::string text = std::to_string(row.frame) + ',' + row.time_s + ',' + cell(row.point) + ',' + row.position.csv() +
                      ',' + row.distance_m + ',' + std::string(row.state) + ',' + cell(row.camera) + ',' +
                      row.nearest.csv() + ',' + row.direction.csv() + ',' + yes(row.stale) + ',' + yes(row.budget) +
                      ',' + row.known_to_m;
-  if (row.hybrid) {
-    text += ',' + row.hybrid_direction.csv() + ',' + std::to_string(row.obstacle_points);
+  if (columns_.hybrid_direction) {
+    text += ',' + row.hybrid_direction.csv();
+  }
+  if (columns_.obstacle_points) {
+    text += ',' + std::to_string(row.obstacle_points);
+  }
+  if (columns_.shapes) {
+    text += ',' + row.radius_m + ',' + row.end.csv() + ',' + row.on_axis.csv();
   }
   return text + '\n';
 }
 
-std::string AnswerWriter::json(const Row& row) {
+std::string AnswerWriter::json(const Row& row) const {
   rapidjson::StringBuffer buffer;
   Json writer(buffer);
   writer.StartObject();
@@ -159,11 +171,21 @@ std::string AnswerWriter::json(const Row& row) {
   writer.Bool(row.budget);
   writer.Key("known_to_m");
   write_number(writer, row.known_to_m);
-  if (row.hybrid) {
+  if (columns_.hybrid_direction) {
     writer.Key("hybrid_direction");
     row.hybrid_direction.json(writer);
+  }
+  if (columns_.obstacle_points) {
     writer.Key("obstacle_points");
     writer.Int64(row.obstacle_points);
+  }
+  if (columns_.shapes) {
+    writer.Key("radius_m");
+    write_number(writer, row.radius_m);
+    writer.Key("end_m");
+    row.end.json(writer);
+    writer.Key("on_axis_m");
+    row.on_axis.json(writer);
   }
   writer.EndObject();
   return std::string(buffer.GetString(), buffer.GetSize()) + '\n';

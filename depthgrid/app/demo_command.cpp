@@ -11,6 +11,7 @@
 
 #include "depthgrid/app/demo_picture.hpp"
 #include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/search/search.hpp"
 #include "depthgrid/simulation/demo_scene.hpp"
 
 // printf lays out the table; streams would need a line a column.
@@ -38,13 +39,11 @@ std::vector<Frame> frames_of(const std::vector<simulation::View>& views) {
   return frames;
 }
 
-/// Distances of all control points with the first `cameras` cameras of the demo.
-std::vector<Proximity> evaluate(const simulation::DemoScene& demo, std::span<const Frame> frames, std::size_t cameras,
-                                const grid::DepthQuantisation& quantisation, const grid::EvaluationSettings& settings) {
-  Rig rig = demo.rig;
-  rig.cameras.resize(cameras);
+std::vector<Proximity> evaluate_grid(const simulation::DemoScene& demo, const Rig& rig, std::span<const Frame> frames,
+                                     const grid::DepthQuantisation& quantisation,
+                                     const grid::EvaluationSettings& settings) {
   grid::GridEvaluator evaluator(rig, 0, quantisation, settings);
-  (void)evaluator.update(frames.first(cameras));  // the frames of the scene are complete
+  (void)evaluator.update(frames);  // the frames of the scene are complete
   std::vector<grid::Evaluation> evaluations(demo.control_points_world.size());
   evaluator.evaluate(demo.control_points_world, evaluations);
   std::vector<Proximity> answers;
@@ -53,6 +52,44 @@ std::vector<Proximity> evaluate(const simulation::DemoScene& demo, std::span<con
     answers.push_back(evaluation.nearest);
   }
   return answers;
+}
+
+/// The same question to the search: the grid's space, exact images of one instant.
+std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const Rig& rig, std::span<const Frame> frames,
+                                       const grid::DepthQuantisation& quantisation, double rho_m) {
+  const grid::DepthGrid space(rig.cameras[0].intrinsics, quantisation);
+  search::Settings settings;
+  settings.space = search::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
+  settings.policies = {search::Policy::obstacle, search::Policy::ignored, search::Policy::obstacle, 0.0};
+  settings.margins.assign(rig.cameras.size(), CameraMargins{});
+  settings.rho_m = rho_m;
+  settings.v_max_m_s = 0.0;
+  search::ViewStore store(rig, settings);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    (void)store.update(k, frames[k]);
+  }
+  std::vector<search::Primitive> points;
+  for (const Eigen::Vector3d& p_world : demo.control_points_world) {
+    points.push_back(search::point(p_world));
+  }
+  std::vector<search::Answer> found(points.size());
+  search::Search(settings).distances(store.snapshot(), points, found);
+  std::vector<Proximity> answers;
+  for (const search::Answer& answer : found) {
+    answers.push_back(answer.nearest);
+  }
+  return answers;
+}
+
+/// Distances of all control points with the first `cameras` cameras of the demo.
+std::vector<Proximity> evaluate(const simulation::DemoScene& demo, std::span<const Frame> frames, std::size_t cameras,
+                                const grid::DepthQuantisation& quantisation, const std::string& method) {
+  Rig rig = demo.rig;
+  rig.cameras.resize(cameras);
+  grid::EvaluationSettings settings;
+  settings.variant = method == "letter" ? grid::Variant::letter : grid::Variant::corrected;
+  return method == "search" ? evaluate_search(demo, rig, frames.first(cameras), quantisation, settings.rho_m)
+                            : evaluate_grid(demo, rig, frames.first(cameras), quantisation, settings);
 }
 
 std::string cell(const Proximity& answer) {
@@ -104,15 +141,14 @@ void run_demo(const DemoOptions& options) {
   const std::vector<Frame> frames = frames_of(views);
 
   const grid::DepthQuantisation quantisation;
-  grid::EvaluationSettings settings;
-  settings.variant = options.variant == "letter" ? grid::Variant::letter : grid::Variant::corrected;
-  const DemoAnswers answers{evaluate(demo, frames, 1, quantisation, settings),
-                            evaluate(demo, frames, 2, quantisation, settings)};
+  const double rho_m = grid::EvaluationSettings{}.rho_m;
+  const DemoAnswers answers{evaluate(demo, frames, 1, quantisation, options.method),
+                            evaluate(demo, frames, 2, quantisation, options.method)};
 
   std::printf(
       "A person, an arm and two depth cameras 4 m apart, by ray casting. Distances in mm from nine points on the\n"
-      "arm's axis; surveillance radius %.0f mm; variant %s.\n\n",
-      1000 * settings.rho_m, options.variant.c_str());
+      "arm's axis; surveillance radius %.0f mm; method %s.\n\n",
+      1000 * rho_m, options.method.c_str());
   std::printf("point    x      y      z (m)    true    one camera             two cameras\n");
   std::vector<double> true_m;
   for (std::size_t i = 0; i < demo.control_points_world.size(); ++i) {
@@ -121,7 +157,7 @@ void run_demo(const DemoOptions& options) {
     std::printf("%5zu %6.2f %6.2f %6.2f %9.0f    %-21s  %s\n", i + 1, p.x(), p.y(), p.z(), 1000 * true_m.back(),
                 cell(answers.one_camera[i]).c_str(), cell(answers.two_cameras[i]).c_str());
   }
-  print_closing(true_m, answers, settings.rho_m);
+  print_closing(true_m, answers, rho_m);
   if (!options.picture.empty()) {
     write_demo_picture(options.picture, demo, frames, answers, quantisation);
     std::printf("Picture: %s\n", options.picture.c_str());
@@ -132,8 +168,11 @@ void add_demo_command(CLI::App& app) {
   const auto options = std::make_shared<DemoOptions>();
   CLI::App* const command =
       app.add_subcommand("demo", "distances in an embedded scene with one camera and with two; no data needed");
-  command->add_option("--variant", options->variant, "letter: as printed, errors included; corrected: a lower bound")
-      ->check(CLI::IsMember({"letter", "corrected"}))
+  command
+      ->add_option(
+          "--method,--variant", options->method,
+          "letter: as printed, errors included; corrected: its grid, a lower bound; search: a tight lower bound")
+      ->check(CLI::IsMember({"letter", "corrected", "search"}))
       ->capture_default_str();
   command->add_option("--picture", options->picture, "also write a picture of the scene to this PNG file");
   command->footer("Example:\n  depthgrid demo --picture demo.png");

@@ -7,7 +7,7 @@
 namespace depthgrid::app {
 
 struct DemoOptions {
-  std::string variant = "corrected";
+  std::string method = "corrected";  ///< letter, corrected or search
   std::string picture;  ///< PNG file; empty: no picture
 };
 

@@ -1,8 +1,8 @@
 #include "depthgrid/app/evaluation_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
-#include "depthgrid/app/sensor_preset.hpp"
 #include "depthgrid/app/usage_error.hpp"
 
 namespace depthgrid::app {
@@ -12,58 +12,34 @@ namespace {
 constexpr int kLargestCellCount = 65535;
 
 void add_method_options(CLI::App& command, EvaluationOptions& options) {
-  command.add_option("--variant", options.variant, "letter: as printed, errors included; corrected: a lower bound")
-      ->check(CLI::IsMember({"letter", "corrected"}))
-      ->capture_default_str()
-      ->group("Method");
-  command.add_option("--window", options.window, "pixels evaluated: rho = region of surveillance, image = all")
-      ->check(CLI::IsMember({"rho", "image"}))
+  command
+      .add_option("--method,--variant", options.method,
+                  "letter: as printed, errors included; corrected: its grid, a lower bound; search: a tight lower "
+                  "bound, from any cameras, needs the options of the group Search")
+      ->check(CLI::IsMember({"letter", "corrected", "search"}))
       ->capture_default_str()
       ->group("Method");
   command.add_option("--collect", options.collect, "minimum: nearest only; hybrid: direction from all within rho")
       ->check(CLI::IsMember({"minimum", "hybrid"}))
       ->capture_default_str()
       ->group("Method");
-  command.add_option("--outside", options.outside, "space outside the grid: ignored, or counted as obstacle")
+  command
+      .add_option("--outside", options.outside,
+                  "space outside the space of interest: ignored, or counted as obstacle (default: ignored; search "
+                  "has no default)")
       ->check(CLI::IsMember({"ignored", "obstacle"}))
-      ->capture_default_str()
       ->group("Method");
   command.add_option("--rho", options.rho_m, "surveillance radius in metres")->capture_default_str()->group("Method");
 }
 
-void add_sensor_options(CLI::App& command, EvaluationOptions& options) {
-  std::string sensors;
-  std::vector<std::string> names;
-  for (const auto& preset : sensor_presets()) {
-    sensors += "; " + preset.name + ": " + preset.description;
-    names.push_back(preset.name);
-  }
-  command.add_option("--sensor", options.sensor, "margins to start from" + sensors)
-      ->check(CLI::IsMember(names))
-      ->capture_default_str()
-      ->group("Sensor");
-  command.add_option("--margin-constant", options.margin_constant_m, "constant part of the depth margin m(D), metres")
-      ->group("Sensor");
-  command.add_option("--margin-linear", options.margin_linear, "part of m(D) that grows with D")->group("Sensor");
-  command.add_option("--margin-quadratic", options.margin_quadratic_per_m, "part of m(D) that grows with D^2, 1/metre")
-      ->group("Sensor");
-  command.add_option("--margin-lateral", options.margin_lateral_px, "reach w beside a pixel, pixels")->group("Sensor");
-  command.add_option("--margin-translation", options.margin_translation_m, "calibration error of position, metres")
-      ->group("Sensor");
-  command.add_option("--margin-rotation", options.margin_rotation_rad, "calibration error of rotation, radians")
-      ->group("Sensor");
-  command
-      .add_option("--margin-time", options.margin_time_m, "largest way of an obstacle between the exposures, metres")
-      ->group("Sensor");
-  command.add_option("--near", options.near_m, "nearest measurable depth, metres")->group("Sensor");
-  command.add_option("--far", options.far_m, "farthest measurable depth, metres")->group("Sensor");
-  command.add_option("--beyond-far", options.beyond_far, "readings beyond --far: invalid, or clamp = free up to --far")
-      ->check(CLI::IsMember({"invalid", "clamp"}))
-      ->group("Sensor");
-}
-
 void add_grid_options(CLI::App& command, EvaluationOptions& options) {
-  command.add_option("--d-min", options.d_min_m, "depth at which the grid begins, metres (default 0.2882)")
+  command
+      .add_option("--window", options.window, "pixels evaluated: rho = region of surveillance (default), image = all")
+      ->check(CLI::IsMember({"rho", "image"}))
+      ->group("Depth grid");
+  command
+      .add_option("--d-min", options.d_min_m,
+                  "depth at which the grid, or the frustum of --d-max, begins, metres (default of the grid 0.2882)")
       ->group("Depth grid");
   command.add_option("--step", options.step_m, "depth of a cell, metres (default 0.01)")->group("Depth grid");
   command.add_option("--growth", options.growth, "growth of a cell's depth with depth (default 0)")
@@ -78,50 +54,39 @@ void add_grid_options(CLI::App& command, EvaluationOptions& options) {
 
 void add_evaluation_options(CLI::App& command, EvaluationOptions& options) {
   add_method_options(command, options);
-  add_sensor_options(command, options);
   add_grid_options(command, options);
 }
 
-grid::EvaluationSettings evaluation_settings(const EvaluationOptions& options) {
+void refuse_grid_options(const EvaluationOptions& options) {
+  const char* given = options.window   ? "--window"
+                      : options.step_m ? "--step"
+                      : options.growth ? "--growth"
+                      : options.count  ? "--count"
+                                       : nullptr;
+  if (given != nullptr) {
+    fail_usage(given, " has no effect with --method search, which has no depth grid");
+  }
+}
+
+grid::EvaluationSettings evaluation_settings(const EvaluationOptions& options,
+                                             const std::vector<CameraMargins>& margins) {
   grid::EvaluationSettings settings;
-  settings.variant = options.variant == "letter" ? grid::Variant::letter : grid::Variant::corrected;
+  settings.variant = options.method == "letter" ? grid::Variant::letter : grid::Variant::corrected;
   settings.window = options.window == "image" ? grid::Window::whole_image : grid::Window::region_of_surveillance;
   settings.collect = options.collect == "hybrid" ? grid::Collect::hybrid : grid::Collect::minimum;
   settings.outside = options.outside == "obstacle" ? grid::OutsideSpace::obstacle : grid::OutsideSpace::ignored;
   settings.rho_m = options.rho_m;
-
-  const bool any_margin = options.margin_constant_m || options.margin_linear || options.margin_quadratic_per_m ||
-                          options.margin_lateral_px || options.margin_translation_m || options.margin_rotation_rad ||
-                          options.margin_time_m;
-  if (any_margin && settings.variant == grid::Variant::letter) {
-    fail_usage("--margin-... has no effect with --variant letter, which knows no margins; use --variant corrected");
+  settings.sensor.lateral_px = 0;
+  for (const CameraMargins& camera : margins) {
+    settings.sensor.constant_m = std::max(settings.sensor.constant_m, camera.sensor.constant_m);
+    settings.sensor.linear = std::max(settings.sensor.linear, camera.sensor.linear);
+    settings.sensor.quadratic_per_m = std::max(settings.sensor.quadratic_per_m, camera.sensor.quadratic_per_m);
+    settings.sensor.lateral_px = std::max(settings.sensor.lateral_px, camera.sensor.lateral_px);
+    settings.pose.translation_m = std::max(settings.pose.translation_m, camera.translation_m);
+    settings.pose.rotation_rad = std::max(settings.pose.rotation_rad, camera.rotation_rad);
   }
-  const SensorMargin& preset = sensor_preset(options.sensor).margin;
-  settings.sensor.constant_m = options.margin_constant_m.value_or(preset.constant_m);
-  settings.sensor.linear = options.margin_linear.value_or(preset.linear);
-  settings.sensor.quadratic_per_m = options.margin_quadratic_per_m.value_or(preset.quadratic_per_m);
-  settings.sensor.lateral_px = options.margin_lateral_px.value_or(preset.lateral_px);
-  settings.pose.translation_m = options.margin_translation_m.value_or(0.0);
-  settings.pose.rotation_rad = options.margin_rotation_rad.value_or(0.0);
-  settings.pose.time_m = options.margin_time_m.value_or(0.0);
   grid::validate(settings);
   return settings;
-}
-
-std::optional<double> near_limit_m(const EvaluationOptions& options) {
-  return options.near_m ? options.near_m : sensor_preset(options.sensor).near_m;
-}
-
-std::optional<double> far_limit_m(const EvaluationOptions& options) {
-  return options.far_m ? options.far_m : sensor_preset(options.sensor).far_m;
-}
-
-std::optional<bool> clamp_beyond_far(const EvaluationOptions& options) {
-  if (options.beyond_far) {
-    return *options.beyond_far == "clamp";
-  }
-  // A preset's far end is a declared property of the sensor; the user's own is not unless it is said.
-  return !options.far_m && sensor_preset(options.sensor).far_m ? std::optional<bool>(true) : std::nullopt;
 }
 
 grid::DepthQuantisation depth_quantisation(const EvaluationOptions& options, const grid::DepthQuantisation& base,

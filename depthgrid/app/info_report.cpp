@@ -49,6 +49,24 @@ std::string cameras_text(const input::Recording& recording, const RecordingInfo&
   return text;
 }
 
+/// What the rig file states; one line a camera.
+std::string margins_text(const Rig& rig) {
+  std::string text = "margins that the rig file states: m(D), lateral reach; calibration; half exposure, time stamp\n";
+  for (const RigCamera& camera : rig.cameras) {
+    text += line("%-17s ", camera.id.c_str());
+    if (!camera.margins) {
+      text += "none\n";
+      continue;
+    }
+    const CameraMargins& m = *camera.margins;
+    text += line("%.4f + %.4f D + %.5f D^2 m, %d px; %.4f m, %.4f rad; %.1f ms, %.1f ms", m.sensor.constant_m,
+                 m.sensor.linear, m.sensor.quadratic_per_m, m.sensor.lateral_px, m.translation_m, m.rotation_rad,
+                 1e3 * m.half_exposure_s, 1e3 * m.time_uncertainty_s);
+    text += camera.sensor.empty() ? "\n" : " (sensor " + camera.sensor + ")\n";
+  }
+  return text;
+}
+
 std::string pair_rows(const Rig& rig, const std::vector<const PairSurvey*>& pairs) {
   std::string text =
       "                              point to plane         along the ray\n"
@@ -138,6 +156,7 @@ std::string to_text(const input::Recording& recording, const RecordingInfo& info
   text += recording.rate_hz() ? line("%.4g a second\n", *recording.rate_hz()) : std::string("frame rate unknown\n");
   text += rig.T_floor_world ? "floor frame: known (--in floor)\n\n" : "floor frame: unknown\n\n";
   text += cameras_text(recording, info) + "\n";
+  text += margins_text(rig) + "\n";
 
   std::vector<const PairSurvey*> pairs;
   for (const auto& pair : info.pairs) {

@@ -12,8 +12,18 @@
 namespace depthgrid::input {
 namespace {
 
-constexpr std::size_t kFixedColumns = 4;   // id,x,y,z
-constexpr std::size_t kMovingColumns = 5;  // frame,id,x,y,z
+/// How many values of a row say what about a point.
+constexpr std::size_t kPoint = 4;    // id,x,y,z
+constexpr std::size_t kSphere = 5;   // id,x,y,z,radius
+constexpr std::size_t kCapsule = 8;  // id,x,y,z,radius,x2,y2,z2
+
+/// What the columns of a file are.
+struct Columns {
+  bool frame = false;        ///< the first one is the frame's number
+  std::size_t of_point = 0;  ///< kPoint, kSphere or kCapsule; 0: not known yet
+
+  [[nodiscard]] std::size_t count() const noexcept { return of_point + (frame ? 1 : 0); }
+};
 
 struct Value {
   std::string_view text;
@@ -49,37 +59,69 @@ bool equals_ignoring_case(std::string_view text, std::string_view lower) {
                     [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
-bool is_header(const std::vector<Value>& values) {
-  const std::size_t skip = values.size() == kFixedColumns ? 1 : 0;
-  if (values.size() != kFixedColumns && values.size() != kMovingColumns) {
-    return false;
-  }
-  constexpr std::array<std::string_view, kMovingColumns> kNames = {"frame", "id", "x", "y", "z"};
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!equals_ignoring_case(values[k].text, kNames[k + skip])) {
-      return false;
+/// The columns that a header names; nothing when the row is no header.
+std::optional<Columns> header_columns(const std::vector<Value>& values) {
+  constexpr std::array<std::string_view, 1 + kCapsule> kNames = {"frame",  "id", "x",  "y", "z",
+                                                                 "radius", "x2", "y2", "z2"};
+  for (const bool frame : {false, true}) {
+    for (const std::size_t of_point : {kPoint, kSphere, kCapsule}) {
+      const Columns columns{frame, of_point};
+      const auto* first = kNames.begin() + (frame ? 0 : 1);
+      if (std::equal(
+              values.begin(), values.end(), first, first + columns.count(),
+              [](const Value& value, std::string_view name) { return equals_ignoring_case(value.text, name); })) {
+        return columns;
+      }
     }
   }
-  return true;
+  return std::nullopt;
 }
 
-double coordinate_m(const Place& place, const Value& value, char axis) {
+Columns columns_without_header(const Place& place, const std::vector<Value>& values) {
+  if (values.size() != kPoint && values.size() != kPoint + 1) {
+    fail_at(place, values[0],
+            std::to_string(values.size()) +
+                " values, must be 4 (id,x,y,z) or 5 (frame,id,x,y,z); radius and x2,y2,z2 need a header row");
+  }
+  return {values.size() != kPoint, kPoint};
+}
+
+double length_m(const Place& place, const Value& value, const char* name) {
   const auto number = parse_number<double>(value.text);
   if (!number) {
-    fail_at(place, value, std::string(1, axis) + " is '" + std::string(value.text) + "', must be a number in metres");
+    fail_at(place, value, std::string(name) + " is '" + std::string(value.text) + "', must be a number in metres");
   }
   if (!std::isfinite(*number)) {
-    fail_at(place, value, std::string(1, axis) + " is '" + std::string(value.text) + "', must be finite");
+    fail_at(place, value, std::string(name) + " is '" + std::string(value.text) + "', must be finite");
   }
   return *number;
 }
 
 Eigen::Vector3d position_m(const Place& place, std::span<const Value> xyz) {
-  return {coordinate_m(place, xyz[0], 'x'), coordinate_m(place, xyz[1], 'y'), coordinate_m(place, xyz[2], 'z')};
+  return {length_m(place, xyz[0], "x"), length_m(place, xyz[1], "y"), length_m(place, xyz[2], "z")};
 }
 
-std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, const std::vector<Value>& values) {
-  if (values.size() == kFixedColumns) {
+/// `values`: x,y,z and, where the columns are there, radius and x2,y2,z2.
+ControlPoint point_of(const std::string& id, const Place& place, std::span<const Value> values) {
+  ControlPoint point{id, position_m(place, values.first<3>()), 0, std::nullopt};
+  if (values.size() >= kSphere - 1 && !values[3].text.empty()) {
+    point.radius_m = length_m(place, values[3], "radius");
+    if (point.radius_m < 0) {
+      fail_at(place, values[3], "radius is '" + std::string(values[3].text) + "', must not be negative");
+    }
+  }
+  if (values.size() == kCapsule - 1) {
+    const std::span<const Value> end = values.last<3>();
+    if (!std::all_of(end.begin(), end.end(), [](const Value& value) { return value.text.empty(); })) {
+      point.end_m.emplace(length_m(place, end[0], "x2"), length_m(place, end[1], "y2"), length_m(place, end[2], "z2"));
+    }
+  }
+  return point;
+}
+
+std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, const Columns& columns,
+                                     const std::vector<Value>& values) {
+  if (!columns.frame) {
     return points.fixed;
   }
   const auto frame = parse_number<int>(values[0].text);
@@ -89,16 +131,17 @@ std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, 
   return points.of_frame[*frame];
 }
 
-void add_point(ControlPoints& points, const Place& place, const std::vector<Value>& values) {
-  const Value& id = values[values.size() - kFixedColumns];
-  std::vector<ControlPoint>& list = points_of(points, place, values);
+void add_point(ControlPoints& points, const Place& place, const Columns& columns, const std::vector<Value>& values) {
+  const std::span<const Value> of_point = std::span(values).last(columns.of_point);
+  const Value& id = of_point[0];
+  std::vector<ControlPoint>& list = points_of(points, place, columns, values);
   if (id.text.empty()) {
     fail_at(place, id, "the id is empty, every control point needs one");
   }
   if (std::any_of(list.begin(), list.end(), [&](const ControlPoint& point) { return point.id == id.text; })) {
     fail_at(place, id, "id '" + std::string(id.text) + "' occurs twice, ids must be distinct");
   }
-  list.push_back({std::string(id.text), position_m(place, std::span(values).last<3>())});
+  list.push_back(point_of(std::string(id.text), place, of_point.subspan(1)));
 }
 
 }  // namespace
@@ -113,7 +156,7 @@ std::span<const ControlPoint> ControlPoints::at(int frame_number) const noexcept
 
 ControlPoints parse_control_points(std::string_view text, const std::string& name) {
   ControlPoints points;
-  std::size_t columns = 0;  // as the first row has them
+  Columns columns;  // as the first row has them
   std::size_t line_number = 0;
   while (!text.empty()) {
     ++line_number;
@@ -125,21 +168,19 @@ ControlPoints parse_control_points(std::string_view text, const std::string& nam
       continue;
     }
     const Place place{name, line_number};
-    if (columns == 0) {
-      if (values.size() != kFixedColumns && values.size() != kMovingColumns) {
-        fail_at(place, values[0],
-                std::to_string(values.size()) + " values, must be 4 (id,x,y,z) or 5 (frame,id,x,y,z)");
-      }
-      columns = values.size();
-      if (is_header(values)) {
+    if (columns.of_point == 0) {
+      if (const auto header = header_columns(values)) {
+        columns = *header;
         continue;
       }
+      columns = columns_without_header(place, values);
     }
-    if (values.size() != columns) {
+    if (values.size() != columns.count()) {
       fail_at(place, values[0],
-              std::to_string(values.size()) + " values, must be " + std::to_string(columns) + " as in the first row");
+              std::to_string(values.size()) + " values, must be " + std::to_string(columns.count()) +
+                  " as in the first row");
     }
-    add_point(points, place, values);
+    add_point(points, place, columns, values);
   }
   if (points.fixed.empty() && points.of_frame.empty()) {
     fail(name, ": holds no control point, needs at least one row id,x,y,z");
@@ -155,10 +196,12 @@ ControlPoint parse_control_point(std::string_view text, const std::string& id) {
   const std::string name = "control point '" + std::string(text) + "'";
   const Place place{name, 0};
   const std::vector<Value> values = split(text);
-  if (values.size() != 3) {
-    fail_at(place, values[0], std::to_string(values.size()) + " values, must be 3 (x,y,z in metres)");
+  if (values.size() != kPoint - 1 && values.size() != kSphere - 1 && values.size() != kCapsule - 1) {
+    fail_at(place, values[0],
+            std::to_string(values.size()) +
+                " values, must be 3 (x,y,z in metres), 4 (with a radius) or 7 (x,y,z,radius,x2,y2,z2)");
   }
-  return {id, position_m(place, values)};
+  return point_of(id, place, values);
 }
 
 }  // namespace depthgrid::input

@@ -1,9 +1,10 @@
-// Control points: the points of the robot whose distances are asked for.
+// Control points: the points, spheres and capsules of the robot whose distances are asked for.
 #pragma once
 
 #include <Eigen/Core>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,10 +12,13 @@
 
 namespace depthgrid::input {
 
-/// A named point in metres, in the frame that its user says (world or floor).
+/// A named point in metres, in the frame that its user says (world or floor). With a radius it is a sphere, with an end
+/// too a capsule: all points within the radius of the segment from p_m to end_m.
 struct ControlPoint {
   std::string id;
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+  std::optional<Eigen::Vector3d> end_m{};
 };
 
 /// Points that stay where they are, or points given anew for every frame of a recording. One of the two is empty.
@@ -27,15 +31,18 @@ struct ControlPoints {
 };
 
 /// Reads comma-separated control points, metres: columns id,x,y,z, or frame,id,x,y,z for points that move. A first row
-/// with these names is a header and may be left out. Blank lines and everything behind # are skipped, spaces around
-/// values too. Throws Error that names file, line, column (counted in characters from 1) and value: a wrong number of
-/// values, no number, NaN or infinity, an empty or doubled id (in the same frame), a file without points.
+/// with these names is a header and may be left out. Spheres and capsules need it: id,x,y,z,radius or
+/// id,x,y,z,radius,x2,y2,z2, with or without frame before; radius may be empty (0), and x2,y2,z2 together (no capsule).
+/// Blank lines and everything behind # are skipped, spaces around values too. Throws Error that names file, line,
+/// column (counted in characters from 1) and value: a wrong number of values, no number, NaN or infinity, a negative
+/// radius, an empty or doubled id (in the same frame), a file without points.
 ControlPoints load_control_points(const std::filesystem::path& file);
 
 /// The same from text. `name` stands for the file in messages.
 ControlPoints parse_control_points(std::string_view text, const std::string& name);
 
-/// One point from "x,y,z" in metres, as given on a command line. Throws Error as above.
+/// One point from "x,y,z", "x,y,z,radius" or "x,y,z,radius,x2,y2,z2" in metres, as given on a command line. Throws
+/// Error as above.
 ControlPoint parse_control_point(std::string_view text, const std::string& id);
 
 }  // namespace depthgrid::input

@@ -165,7 +165,7 @@ TEST(Distances, PointsOfAFileMayMove) {
   const TemporaryFolder folder;
   write_wall(folder);
   (void)folder.write("points.csv", "frame,id,x,y,z\n5,hand,0.2,0,1.7\n6,hand,0.2,0,1.8\n");
-  const auto result = run_command("distances . --points points.csv --principal right --variant letter", folder);
+  const auto result = run_command("distances . --points points.csv --principal right --method letter", folder);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto lines = lines_of(result.out);
   ASSERT_EQ(lines.size(), 3U);

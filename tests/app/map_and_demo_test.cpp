@@ -55,12 +55,16 @@ TEST(Map, BrokenCommandsEndInOneLineAndLeaveNothing) {
 }
 
 TEST(Demo, ShadowObstaclesGoWithTheSecondCameraAndNoAnswerIsAboveTheTruth) {
-  const TemporaryFolder folder;
-  const auto demo = run_command("demo --picture demo.png", folder);
-  ASSERT_EQ(demo.exit_code, 0) << demo.err;
-  EXPECT_THAT(demo.out, HasSubstr("9 of 9 points have a shadow obstacle with one camera; 9 of them lose it with two"));
-  EXPECT_THAT(demo.out, HasSubstr("No answer is above the true distance"));
-  EXPECT_GT(std::filesystem::file_size(folder / "demo.png"), 10000U);
+  for (const std::string method : {"corrected", "search"}) {
+    const TemporaryFolder folder;
+    const auto demo = run_command("demo --method " + method + " --picture demo.png", folder);
+    ASSERT_EQ(demo.exit_code, 0) << demo.err;
+    EXPECT_THAT(demo.out, HasSubstr("method " + method));
+    EXPECT_THAT(demo.out,
+                HasSubstr("9 of 9 points have a shadow obstacle with one camera; 9 of them lose it with two"));
+    EXPECT_THAT(demo.out, HasSubstr("No answer is above the true distance"));
+    EXPECT_GT(std::filesystem::file_size(folder / "demo.png"), 10000U);
+  }
 }
 
 TEST(Demo, ALostOutputIsAnError) {
