@@ -1,14 +1,14 @@
-// Quick start: depth images from your own driver in, distances out. No file, no allocation in the loop.
+// Quick start: depth images from your own driver in, distances of robot links out. No file, no allocation in the loop.
 //
-//   c++ -std=c++20 quickstart.cpp $(the flags of depthgrid::grid)     or see examples/consumer for CMake
+//   c++ -std=c++20 quickstart.cpp $(the flags of depthgrid::search)     or see examples/consumer for CMake
 //
 // Ownership  depth_view() and Frame never copy and never own: your buffer must outlive the call of update() and must
 //            not change during it. update() takes what it needs, so that afterwards the buffer is yours again.
 // Stride     is in bytes from one row to the next, so padded and cropped images need no copy; 0 means no padding.
-// Threads    update() is for one thread at a time. evaluate() may run in any number of threads at once, but not while
-//            update() runs on the same evaluator. Two evaluators share nothing.
-// Errors     construction and depth_view() throw depthgrid::Error; update() and evaluate() are noexcept, allocate
-//            nothing and take no lock. What could not be answered has a state that says so, never a magic number.
+// Threads    one thread a camera may call update(), and any number of threads may ask at the same time, each with its
+//            own Search. A snapshot stays as it is while images arrive; drop it when the answers are read.
+// Errors     construction and depth_view() throw depthgrid::Error; update(), snapshot() and distances() are noexcept,
+//            allocate nothing and take no lock. What could not be answered has a state that says so.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +17,10 @@
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/core/sensor_models.hpp"
+#include "depthgrid/search/search.hpp"
+
+namespace search = depthgrid::search;
 
 namespace {
 
@@ -38,45 +41,54 @@ std::vector<std::uint16_t> image_from_driver() {
 }
 
 int run() {
-  // 1. The rig: intrinsics as OpenCV or ROS give them, and the pose that maps camera to world coordinates (metres;
-  //    camera frame x right, y down, z forward). Add further cameras for space that the first cannot see.
+  // 1. The rig: intrinsics as OpenCV or ROS give them, the pose that maps camera to world coordinates (metres; camera
+  //    frame x right, y down, z forward), and how far the camera may err. Add cameras for space that the first cannot
+  //    see; they need no common image size, rate or sensor.
+  const depthgrid::SensorModel& sensor = depthgrid::sensor_model("realsense_d435");
   depthgrid::Rig rig;
   depthgrid::RigCamera& camera = rig.cameras.emplace_back();
   camera.id = "front";
   camera.intrinsics = depthgrid::from_opencv(kWidth, kHeight, 525.0, 525.0, 319.5, 239.5);
   camera.T_world_camera = depthgrid::look_at({0.0, 0.0, 1.0}, {1.0, 0.0, 1.0});
   camera.metres_per_unit = 0.001;
-  camera.rule.near_m = 0.4;  // nothing nearer is believed
-  camera.rule.far_m = 6.0;
+  camera.rule = sensor.rule;  // readings outside 0.28 ... 3 m are no measurements
+  camera.margins = depthgrid::sensor_margins(sensor, camera.intrinsics, camera.metres_per_unit);
+  camera.margins->translation_m = 0.005;  // calibration: where the camera stands
+  camera.margins->rotation_rad = 0.002;   // and looks
 
-  // 2. The evaluator: every buffer is allocated here. Depth cells of 1 cm from 0.3 m to 4.3 m: they
-  //    begin before near_m, so that the blind zone counts as unseen space and is not left out.
-  depthgrid::grid::DepthQuantisation quantisation;
-  quantisation.d_min_m = 0.3;
-  quantisation.step_m = 0.01;
-  quantisation.count = 400;
-  depthgrid::grid::EvaluationSettings settings;
-  settings.rho_m = 0.6;                // how far around a point obstacles matter
-  settings.sensor.constant_m = 0.005;  // what your sensor's depth may be off by
-  settings.sensor.quadratic_per_m = 0.002;
-  depthgrid::grid::GridEvaluator evaluator(rig, 0, quantisation, settings);
+  // 2. What counts as an obstacle. None of this has a default.
+  search::Settings settings;
+  settings.space = search::BoxSpace{{0.3, -1.0, 0.2}, {2.4, 1.0, 1.9}};
+  settings.policies.unobserved = search::Policy::obstacle;     // what no camera looks at
+  settings.policies.outside = search::Policy::ignored;         // beyond the box: known_to_m says how far it is
+  settings.policies.robot_pockets = search::Policy::obstacle;  // the shadow right behind the robot
+  settings.margins = depthgrid::camera_margins(rig);
+  settings.v_max_m_s = 1.6;  // nothing moves faster
+  settings.rho_m = 0.6;      // how far around a link obstacles matter
 
-  // 3. For every exposure: one frame a camera, in the rig's order. The view is on your buffer.
+  // 3. Every buffer is allocated here.
+  search::ViewStore store(rig, settings);
+  search::Search search(settings);
+
+  // 4. For every exposure of every camera, as it comes. A camera that moves gives its pose with the image.
   const std::vector<std::uint16_t> pixels = image_from_driver();
-  std::array<depthgrid::Frame, 1> frames;
-  frames[0].depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
-  frames[0].time_s = 0.0;  // middle of the exposure, one clock for all cameras
-  if (!evaluator.update(frames)) {
-    std::puts("a camera gave no usable frame: all it should see counts as not free");
+  depthgrid::Frame frame;
+  frame.depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
+  frame.time_s = 0.0;  // middle of the exposure, one clock for all cameras
+  if (store.update(0, frame) != search::UpdateResult::taken) {
+    std::puts("the frame is not usable: all that this camera should see counts as not free");
   }
 
-  // 4. Any number of points on the robot, world frame.
-  for (const Eigen::Vector3d& p_world :
-       {Eigen::Vector3d{1.3, 0.0, 1.0}, Eigen::Vector3d{1.9, 0.0, 1.0}, Eigen::Vector3d{1.2, 0.5, 1.2}}) {
-    const depthgrid::Proximity answer = evaluator.evaluate(p_world).nearest;
-    const auto state = depthgrid::to_string(answer.state);
-    std::printf("(%.2f %.2f %.2f)  %.3f m  %.*s\n", p_world.x(), p_world.y(), p_world.z(), answer.distance_m,
-                static_cast<int>(state.size()), state.data());
+  // 5. Whole links of the robot at once: points, spheres and capsules, world frame.
+  const std::array<search::Primitive, 3> links = {search::capsule({0.7, 0.0, 0.9}, {1.0, 0.0, 1.0}, 0.06),
+                                                  search::sphere({1.1, 0.0, 1.0}, 0.08),
+                                                  search::point({1.9, 0.0, 1.0})};
+  std::array<search::Answer, 3> answers;
+  search.distances(store.snapshot(), links, answers);
+  for (const search::Answer& answer : answers) {
+    const auto state = depthgrid::to_string(answer.nearest.state);
+    std::printf("%.3f m  %.*s, known to %.3f m\n", answer.nearest.distance_m, static_cast<int>(state.size()),
+                state.data(), answer.nearest.known_to_m);
   }
   return 0;
 }

@@ -62,6 +62,18 @@ void validate(const Rig& rig) {
   }
 }
 
+std::vector<CameraMargins> camera_margins(const Rig& rig) {
+  std::vector<CameraMargins> margins;
+  for (const RigCamera& camera : rig.cameras) {
+    if (!camera.margins) {
+      fail("rig '", rig.name, "': camera '", camera.id,
+           "' has no margins, so nothing is known of its errors; give its sensor (\"ideal\": none) or margins");
+    }
+    margins.push_back(*camera.margins);
+  }
+  return margins;
+}
+
 std::size_t camera_index(const Rig& rig, const std::string& id) {
   std::string known;
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {

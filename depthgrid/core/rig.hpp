@@ -41,6 +41,9 @@ inline constexpr double kLargestTranslation = 1e5;
 /// kLargestTranslation.
 void validate(const Rig& rig);
 
+/// The margins of all cameras, in the rig's order. Throws Error that names a camera without.
+std::vector<CameraMargins> camera_margins(const Rig& rig);
+
 /// Index of the camera called `id`. Throws Error that lists the ids there are.
 std::size_t camera_index(const Rig& rig, const std::string& id);
 

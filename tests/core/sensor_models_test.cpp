@@ -1,6 +1,7 @@
 // The built-in sensor models against the noise models that they stand for.
 #include "depthgrid/core/sensor_models.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "depthgrid/core/rig.hpp"
 #include "support/thrown_message.hpp"
 
 namespace depthgrid {
@@ -97,6 +99,41 @@ TEST(SensorModels, AzureKinectHasTheStatedErrorsInEveryMode) {
   }
   EXPECT_EQ(sensor_model("azure_kinect_wfov").half_exposure_s, 0.0203 / 2);
   EXPECT_EQ(sensor_model("azure_kinect_nfov").rule.far_m, 3.86);
+}
+
+TEST(CameraMarginsOfARig, AreThoseOfItsCamerasOrAnError) {
+  Rig rig;
+  rig.name = "cell";
+  rig.cameras.resize(2);
+  rig.cameras[0].margins = CameraMargins{{}, 0.01, 0, 0, 0};
+  rig.cameras[1].id = "right";
+  EXPECT_EQ(test::thrown_message([&] { (void)camera_margins(rig); }),
+            "rig 'cell': camera 'right' has no margins, so nothing is known of its errors; give its sensor (\"ideal\": "
+            "none) or margins");
+  rig.cameras[1].margins = CameraMargins{{}, 0.02, 0, 0, 0};
+  ASSERT_EQ(camera_margins(rig).size(), 2U);
+  EXPECT_EQ(camera_margins(rig)[1].translation_m, 0.02);
+}
+
+TEST(SensorOfACamera, NeedsMarginsAndAKnownName) {
+  Rig rig;
+  rig.name = "cell";
+  rig.cameras.resize(1);
+  RigCamera& camera = rig.cameras[0];
+  camera.id = "left";
+  camera.intrinsics = camera_of(447);
+  const auto message = [&] { return test::thrown_message([&] { validate(rig); }); };
+  EXPECT_EQ(message(), "");
+  camera.sensor = "kinect_v1";
+  EXPECT_EQ(message(),
+            "camera 'left': has the sensor model 'kinect_v1' but no margins; take those of sensor_margins()");
+  camera.margins = CameraMargins{};
+  EXPECT_EQ(message(), "");
+  camera.sensor = "kinect";
+  EXPECT_THAT(message(), ::testing::StartsWith("camera 'left': there is no sensor model 'kinect', known are ideal, "));
+  camera.sensor.clear();
+  camera.margins->rotation_rad = -1;
+  EXPECT_EQ(message(), "camera 'left': rotation is -1 rad, must be a finite number that is not negative");
 }
 
 }  // namespace
