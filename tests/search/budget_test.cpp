@@ -16,7 +16,7 @@ using reference::RandomProblem;
 TEST(Budget, OfMoreNodesGivesALargerBoundUpToTheWholeAnswer) {
   int stopped = 0;
   int raised = 0;
-  for_random_problems(20, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random.chance(0.5) ? SpaceKind::box : SpaceKind::frustum, true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -47,7 +47,8 @@ TEST(Budget, OfMoreNodesGivesALargerBoundUpToTheWholeAnswer) {
 }
 
 TEST(Budget, IsSharedByThePrimitivesOfACall) {
-  for_random_problems(10, {}, [&](const RandomProblem& problem, Random& random) {
+  std::int64_t opened = 0;
+  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, SpaceKind::box, true);
     Asker asker(setup);
     std::vector<Primitive> primitives;
@@ -58,7 +59,7 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
     std::vector<Answer> part(primitives.size());
     Count all;
     asker.search().distances(asker.snapshot(), primitives, part, {}, &all);
-    EXPECT_GT(all.nodes, 0);
+    opened += all.nodes;
     for (const std::int64_t nodes : {std::int64_t{1}, all.nodes / 8, all.nodes / 2}) {
       Count count;
       asker.search().distances(asker.snapshot(), primitives, part, {std::max<std::int64_t>(nodes, 1), 0}, &count);
@@ -70,13 +71,15 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
         stopped = stopped || part[i].nearest.budget;
       }
       EXPECT_TRUE(stopped || all.nodes <= nodes) << nodes << " of " << all.nodes << " nodes";
+      EXPECT_LE(count.nodes, std::max<std::int64_t>(nodes, 1));
     }
   });
+  EXPECT_GT(opened, 0);
 }
 
 TEST(Budget, OfTimeGivesALowerBound) {
   int stopped = 0;
-  for_random_problems(10, {}, [&](const RandomProblem& problem, Random&) {
+  for_random_problems(60, {}, [&](const RandomProblem& problem, Random&) {
     Asker asker(make_setup(problem, SpaceKind::box, true));
     for (const Vector3d& p_world : problem.points_world) {
       const Proximity whole = asker.distance(point(p_world)).nearest;

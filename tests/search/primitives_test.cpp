@@ -43,6 +43,11 @@ std::string to_text(const Primitive& primitive) {
   return text.str();
 }
 
+/// What the answer of a sphere must not exceed, from the distance of its centre.
+double upper_m(const Interval& centre, const SearchSetup& setup, double radius_m) {
+  return centre.hi_m ? std::max(0.0, *centre.hi_m - radius_m) : setup.settings.rho_m;
+}
+
 SearchSetup with_reach(SearchSetup setup, double more_m) {
   for (CameraMargins& margins : setup.settings.margins) {
     margins.translation_m += more_m;
@@ -57,7 +62,7 @@ constexpr double kTouchM = 2e-5;
 
 TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
   int told = 0;
-  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     Asker grown(with_reach(setup, setup.settings.resolution_m));
@@ -82,7 +87,7 @@ TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
   int told = 0;
   reference::RandomOptions options;
   options.cameras = 1;
-  for_random_problems(60, options, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, options, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     const double shortfall_m = setup.settings.resolution_m / (1 - setup.settings.margins[0].rotation_rad);
     Asker asker(setup);
@@ -105,7 +110,7 @@ TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
 /// On the way there no point of the primitive lies in the obstacle.
 TEST(MovedByItsAnswer, MeetsNothingOnTheWay) {
   int told = 0;
-  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     const Reference oracle(oracle_problem(setup));
@@ -133,7 +138,7 @@ TEST(MovedByItsAnswer, MeetsNothingOnTheWay) {
 
 TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
   int told = 0;
-  for_random_problems(40, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -144,7 +149,7 @@ TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
       const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
       const double answer_m = asker.distance(sphere(p_world, radius_m)).nearest.distance_m;
       const std::string text = to_text(sphere(p_world, radius_m));
-      EXPECT_LE(answer_m, std::max(0.0, oracle.distance(p_world).hi_m.value_or(rho_m) - radius_m)) << text;
+      EXPECT_LE(answer_m, upper_m(oracle.distance(p_world), setup, radius_m)) << text;
       EXPECT_GE(answer_m, grown.distance(p_world).lo_m - radius_m - kRounding - kDoubleRounding) << text;
       told += answer_m > 0 && answer_m < setup.settings.rho_m ? 1 : 0;
     }
@@ -155,7 +160,7 @@ TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
 /// The points of the axis are sampled; between two samples D changes by at most half their distance.
 TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
   int told = 0;
-  for_random_problems(25, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -165,16 +170,16 @@ TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
       const Reference oracle(oracle_problem(setup, 0, rho_m));
       const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
       constexpr int kSamples = 9;
-      double upper_m = rho_m;
+      double nearest_m = setup.settings.rho_m;
       double lower_m = rho_m;
       for (int i = 0; i < kSamples; ++i) {
         const Vector3d on_axis = link.a_world + i / (kSamples - 1.0) * (link.b_world - link.a_world);
-        upper_m = std::min(upper_m, oracle.distance(on_axis).hi_m.value_or(rho_m));
+        nearest_m = std::min(nearest_m, upper_m(oracle.distance(on_axis), setup, link.radius_m));
         lower_m = std::min(lower_m, grown.distance(on_axis).lo_m);
       }
       lower_m -= 0.5 * length_m / (kSamples - 1.0);
       const double answer_m = asker.distance(link).nearest.distance_m;
-      EXPECT_LE(answer_m, std::max(0.0, upper_m - link.radius_m)) << to_text(link);
+      EXPECT_LE(answer_m, nearest_m) << to_text(link);
       EXPECT_GE(answer_m, lower_m - link.radius_m - kRounding - kDoubleRounding) << to_text(link);
       told += answer_m > 0 && answer_m < setup.settings.rho_m ? 1 : 0;
     }
@@ -184,7 +189,7 @@ TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
 
 TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
   int told = 0;
-  for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -216,7 +221,7 @@ TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
 
 /// Ends that differ by less than any resolution, down to the smallest number there is.
 TEST(Capsules, OfHardlyAnyLengthAreSpheres) {
-  for_random_problems(20, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -227,7 +232,7 @@ TEST(Capsules, OfHardlyAnyLengthAreSpheres) {
       for (const double length_m : {1e-3, 1e-9, 1e-15, 1e-160, std::numeric_limits<double>::denorm_min()}) {
         const Primitive link = capsule(p_world, p_world + length_m * random.direction(), radius_m);
         const double answer_m = asker.distance(link).nearest.distance_m;
-        EXPECT_LE(answer_m, std::max(0.0, interval.hi_m.value_or(rho_m) - radius_m)) << to_text(link);
+        EXPECT_LE(answer_m, upper_m(interval, setup, radius_m)) << to_text(link);
         EXPECT_GE(answer_m, grown.lo_m - radius_m - length_m - kRounding - kDoubleRounding) << to_text(link);
       }
       EXPECT_EQ(asker.distance(capsule(p_world, p_world, radius_m)).nearest.distance_m,
@@ -241,7 +246,7 @@ TEST(Capsules, OfHardlyAnyLengthAreSpheres) {
 TEST(Primitives, ThatAreNoneAreNotEvaluatedAndDisturbNobody) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for_random_problems(5, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(20, {}, [&](const RandomProblem& problem, Random& random) {
     Asker asker(make_setup(problem, random_space(random)));
     const Vector3d p = problem.points_world.front();
     std::vector<Primitive> primitives{point(p), sphere(p, -1e-9), sphere(p, kNaN), sphere(p, kInfinity)};
@@ -266,26 +271,42 @@ TEST(Primitives, ThatAreNoneAreNotEvaluatedAndDisturbNobody) {
   });
 }
 
-TEST(Primitives, InOneCallHaveTheAnswersOfOneCallEach) {
-  for_random_problems(15, {}, [&](const RandomProblem& problem, Random& random) {
+/// Primitives of one call share what is prepared for it, so that answers depend on the company by up to the resolution.
+TEST(Primitives, InOneCallKeepTheirBoundsAndRepeatToTheBit) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
-    Asker one_by_one(setup);
-    Asker together(setup, 4);  // fewer than are asked about: the call is made in parts
+    Asker whole(setup);
+    Asker in_parts(setup, 4);  // fewer than are asked about
     std::vector<Primitive> primitives;
     for (int i = 0; i < 11; ++i) {
-      primitives.push_back(random_primitive(random, problem.points_world[0] + random.in_cube(0.3)));
+      // Far apart in some calls, close together in others.
+      const double apart_m = random.chance(0.5) ? 0.3 : 0.02;
+      const Vector3d p_world = problem.points_world[0] + random.in_cube(apart_m);
+      primitives.push_back(random.chance(0.5) ? point(p_world) : sphere(p_world, random.uniform(0, 0.1)));
     }
     std::vector<Answer> answers(13);
     answers[11].nearest.distance_m = answers[12].nearest.distance_m = 7;
-    together.search().distances(together.snapshot(), primitives, answers);
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-      const Proximity alone = one_by_one.distance(primitives[i]).nearest;
-      EXPECT_EQ(answers[i].nearest.distance_m, alone.distance_m) << to_text(primitives[i]);
-      EXPECT_EQ(answers[i].nearest.state, alone.state) << to_text(primitives[i]);
-    }
+    in_parts.search().distances(in_parts.snapshot(), primitives, answers);
     for (const std::size_t i : {11U, 12U}) {
       EXPECT_EQ(answers[i].nearest.state, ProximityState::not_evaluated) << "nobody asked";
       EXPECT_TRUE(std::isnan(answers[i].nearest.distance_m)) << "nobody asked";
+    }
+    const std::vector<Answer> at_once = whole.distances(primitives);
+    const std::vector<Answer> again = whole.distances(primitives);
+    const double rho_m = setup.settings.rho_m + 0.1;
+    const Reference oracle(oracle_problem(setup, 0, rho_m));
+    const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+      const double radius_m = primitives[i].radius_m;
+      const double most_m =
+          std::min(upper_m(oracle.distance(primitives[i].a_world), setup, radius_m), setup.settings.rho_m);
+      const double least_m = std::min(grown.distance(primitives[i].a_world).lo_m - radius_m, setup.settings.rho_m);
+      for (const double answer_m : {answers[i].nearest.distance_m, at_once[i].nearest.distance_m}) {
+        EXPECT_LE(answer_m, most_m) << to_text(primitives[i]);
+        EXPECT_GE(answer_m, least_m - kRounding - kDoubleRounding) << to_text(primitives[i]);
+      }
+      EXPECT_EQ(at_once[i].nearest.distance_m, again[i].nearest.distance_m) << to_text(primitives[i]);
+      EXPECT_EQ(at_once[i].nearest.state, again[i].nearest.state) << to_text(primitives[i]);
     }
   });
 }
