@@ -1,6 +1,7 @@
 #include "depthgrid/search/cube_test.hpp"
 
 #include <bit>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "depthgrid/search/cube_test.cpp"
@@ -82,34 +83,26 @@ HWY_INLINE Rectangle project(const LocalCamera& camera, const Bounds& b, V z_low
           hn::Add(hn::Mul(most(b.y_high), fy), hn::Set(d, camera.cy + camera.guard_px))};
 }
 
-/// Rectangles of pixels, one a lane, and the pyramid level that covers all of them with four texels each. Level -1 is the
-/// image itself, for rectangles of at most two by two pixels.
+/// Rectangles of pixels, one a lane, and the level that covers all of them with four texels each.
 struct Footprint {
   I corner_00, corner_01, corner_10, corner_11;  ///< indices into the level
-  int level;
+  std::size_t level;                             ///< index into LocalCamera::texels
 };
 
 HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1) {
   const Ints di;
-  const int32_t last = hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0))));
-  if (last <= 1) {
-    const I width = hn::Set(di, camera.width_px);
-    const I row0 = hn::Mul(v0, width);
-    const I row1 = hn::Mul(v1, width);
-    return {hn::Add(row0, u0), hn::Add(row0, u1), hn::Add(row1, u0), hn::Add(row1, u1), -1};
-  }
-  // 6 2^level pixels lie in at most eight texel columns wherever they begin.
-  int level = 0;
-  while ((6 << level) < last) {
-    ++level;
-  }
-  const PyramidLevel& texels = camera.levels[level];
+  const auto last =
+      static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0)))));
+  // Two by two pixels are looked up one by one; 6 2^l + 1 pixels lie in at most eight texel columns of level l wherever
+  // they begin.
+  const std::size_t level = last <= 1 ? 0 : 1 + static_cast<std::size_t>(std::bit_width((last - 1) / 6));
+  const Texels& texels = camera.texels[level];
   const I width = hn::Set(di, texels.width);
-  const I three = hn::Set(di, 3);
-  const I i0 = hn::ShiftRightSame(u0, level);
-  const I j0 = hn::ShiftRightSame(v0, level);
-  const I i1 = hn::Max(i0, hn::Sub(hn::ShiftRightSame(u1, level), three));
-  const I j1 = hn::Max(j0, hn::Sub(hn::ShiftRightSame(v1, level), three));
+  const I back = hn::Set(di, texels.back);
+  const I i0 = hn::ShiftRightSame(u0, texels.shift);
+  const I j0 = hn::ShiftRightSame(v0, texels.shift);
+  const I i1 = hn::Max(i0, hn::Sub(hn::ShiftRightSame(u1, texels.shift), back));
+  const I j1 = hn::Max(j0, hn::Sub(hn::ShiftRightSame(v1, texels.shift), back));
   const I row0 = hn::Mul(j0, width);
   const I row1 = hn::Mul(j1, width);
   return {hn::Add(row0, i0), hn::Add(row0, i1), hn::Add(row1, i0), hn::Add(row1, i1), level};
@@ -120,32 +113,48 @@ template <class Pick>
 HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const float* image, const float* pyramid,
                       Pick pick) {
   const Floats d;
-  const float* HWY_RESTRICT values = at.level < 0 ? image : pyramid + camera.levels[at.level].offset;
+  const float* HWY_RESTRICT values = at.level == 0 ? image : pyramid + camera.texels[at.level].offset;
   return pick(pick(hn::GatherIndex(d, values, at.corner_00), hn::GatherIndex(d, values, at.corner_01)),
               pick(hn::GatherIndex(d, values, at.corner_10), hn::GatherIndex(d, values, at.corner_11)));
 }
 
-/// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high.
-HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high) {
+/// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high. `candidates`: those that a robot's
+/// island may yet hold.
+HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high, Footprint& at) {
   const Floats d;
   const Ints di;
-  const I u0 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_low));
-  const I u1 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_high));
-  const I v0 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_low));
-  const I v1 = hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_high));
-  const Footprint at = footprint(camera, u0, u1, v0, v1);
+  at = footprint(camera, hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_low)),
+                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_high)),
+                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_low)),
+                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_high)));
+  const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
+  const V free_m = extremum(camera, at, camera.free_m, camera.minima_m, min);
+  return hn::And(inside, hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m)));
+}
+
+/// Lanes that lie in the robot's island in each of their pixels.
+HWY_INLINE M in_island(const LocalCamera& camera, M inside, const Footprint& at, V z_low, V z_high) {
+  const Floats d;
+  const View& view = *camera.view;
+  // Islands are rare: most boxes have none even in their first pixel (or around it).
+  const float* HWY_RESTRICT nears =
+      at.level == 0 ? view.island_near_m().data() : view.island_near_maxima_m() + camera.texels[at.level].offset;
+  M held = hn::And(inside, hn::Ge(z_low, hn::GatherIndex(d, nears, at.corner_00)));
+  if (hn::AllFalse(d, held)) {
+    return held;
+  }
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
-  const V free_m = extremum(camera, at, camera.free_m, camera.minima_m, min);
-  const M seen_free = hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m));
-  if (!camera.has_islands) {
-    return hn::And(inside, seen_free);
-  }
-  const View& view = *camera.view;
   const V near_m = extremum(camera, at, view.island_near_m().data(), view.island_near_maxima_m(), max);
   const V far_m = extremum(camera, at, view.island_far_m().data(), view.island_far_minima_m(), min);
-  const M in_robot = hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m));
-  return hn::And(inside, hn::Or(seen_free, in_robot));
+  return hn::And(held, hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m)));
+}
+
+/// Lanes of `inside` that the camera frees: seen free, or robot.
+HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high) {
+  Footprint at;
+  const M free = seen_free(camera, inside, r, z_low, z_high, at);
+  return camera.has_islands ? hn::Or(free, in_island(camera, hn::AndNot(free, inside), at, z_low, z_high)) : free;
 }
 
 /// Lanes that the camera frees wholly.
@@ -157,9 +166,6 @@ HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b) {
   const M inside = hn::And(
       hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
       hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
-  if (hn::AllFalse(d, inside)) {
-    return inside;
-  }
   return freed(camera, inside, r, b.z_low, b.z_high);
 }
 
@@ -276,12 +282,48 @@ HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local,
   return hn::Or(hn::Not(in_view), near);
 }
 
+/// The same, a little to all sides: lanes around whose point the camera does not free a box of which no point is farther
+/// than slack and reach.
+HWY_INLINE M touches_around(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
+  const Floats d;
+  const V x = hn::Add(weighted(camera.rotation, x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
+  const V y = hn::Add(weighted(camera.rotation + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
+  const V z = hn::Add(weighted(camera.rotation + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
+  V slack = hn::Set(d, slack_m);
+  if (camera.has_reach) {
+    slack = hn::Add(slack, hn::Add(hn::Set(d, camera.reach_m),
+                                   hn::Mul(hn::Set(d, camera.reach_per_m), length(x, y, z))));
+  }
+  const V half = hn::Mul(slack, hn::Set(d, 0.577F));
+  const Bounds bounds{hn::Sub(x, half), hn::Add(x, half), hn::Sub(y, half),
+                      hn::Add(y, half), hn::Sub(z, half), hn::Add(z, half)};
+  return hn::Not(freed_whole(camera, bounds));
+}
+
 /// Lanes of `open` that stay open after every camera has been asked.
 HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
   const Floats d;
   const V zero = hn::Zero(d);
   M uncovered = query.uncovered_ignored ? open : hn::Lt(zero, zero);
-  for (std::size_t n = 0; n < query.camera_count; ++n) {
+  std::size_t n = 0;
+  if (!query.uncovered_ignored && query.principal < 0) {
+    // Two cameras at a time, without a branch between them: what one waits for the other hides.
+    for (; n + 1 < query.camera_count; n += 2) {
+      const LocalCamera& one = query.cameras[query.order[n]];
+      const LocalCamera& other = query.cameras[query.order[n + 1]];
+      const M by_one = freed_whole(one, bounds_in(one, boxes));
+      const M by_other = freed_whole(other, bounds_in(other, boxes));
+      open = hn::AndNot(hn::Or(by_one, by_other), open);
+      if (hn::AllFalse(d, open)) {
+        if (n > 0) {
+          std::swap(query.order[0], query.order[n]);
+          std::swap(query.order[1], query.order[n + 1]);
+        }
+        return open;
+      }
+    }
+  }
+  for (; n < query.camera_count; ++n) {
     const std::uint8_t k = query.order[n];
     const LocalCamera& camera = query.cameras[k];
     const Bounds bounds = bounds_in(camera, boxes);
@@ -312,6 +354,7 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
   const V half = hn::Set(d, half_m);
   children.count = 0;
   children.touching = 0;
+  const bool fine = half_m <= 4 * query.slack_m;
   for (std::size_t first = 0; first < 8; first += hn::Lanes(d)) {
     const V x = hn::Add(hn::Set(d, parent.x), hn::Mul(hn::Load(d, kSignX + first), half));
     const V y = hn::Add(hn::Set(d, parent.y), hn::Mul(hn::Load(d, kSignY + first), half));
@@ -341,9 +384,10 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
       continue;
     }
     M touching = open;
-    for (std::size_t n = 0; n < query.camera_count && !hn::AllFalse(d, touching); ++n) {
+    for (std::size_t n = 0; n < query.camera_count && ((n & 1U) != 0 || !hn::AllFalse(d, touching)); ++n) {
       const LocalCamera& camera = query.cameras[query.order[n]];
-      touching = hn::And(touching, touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
+      touching = hn::And(touching, fine ? touches_around(camera, near.near_x, near.near_y, near.near_z, query.slack_m)
+                                        : touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
     }
     std::uint8_t open_bits[8] = {};
     std::uint8_t touching_bits[8] = {};

@@ -44,6 +44,12 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   return (free_m - x.z()) * x.norm() <= slack_along_m * x.z();
 }
 
+/// Some point of the camera's not-free set is no farther from x than slack and reach.
+bool near_blocked(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
+  const Eigen::Vector3d x = camera.to_camera(x_local);
+  return meets_not_free(camera, camera.space, x, slack_m + (camera.has_reach ? camera.reach(x) : 0.0));
+}
+
 }  // namespace
 
 Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
@@ -159,10 +165,11 @@ bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
 
 /// Every camera has x in its not-free set, or nearly so along the ray, and x counts.
 bool Descent::is_blocked(const Eigen::Vector3d& x_local) const noexcept {
+  const double slack_m = settings_.resolution_m - 1e-5;
   bool covered = !query_.uncovered_ignored;
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
-    if (!blocks(camera, x_local, settings_.resolution_m - 1e-5)) {
+    if (!blocks(camera, x_local, slack_m) && !near_blocked(camera, x_local, slack_m)) {
       return false;
     }
     if (!covered) {

@@ -66,6 +66,11 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.minima_m = view.minima_m();
   local.levels = view.levels().data();
   local.level_count = static_cast<int>(view.levels().size());
+  local.texels[0] = {0, view.width_px(), 0, 0};
+  for (int level = 0; level < local.level_count && level + 1 < static_cast<int>(local.texels.size()); ++level) {
+    const PyramidLevel& from = view.levels()[static_cast<std::size_t>(level)];
+    local.texels[static_cast<std::size_t>(level) + 1] = {from.offset, from.width, level, 3};
+  }
   local.width_px = view.width_px();
   local.has_islands = view.has_islands();
   const auto* frustum = std::get_if<FrustumSpace>(&snapshot.settings().space);

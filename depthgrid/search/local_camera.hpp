@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "depthgrid/core/camera.hpp"
@@ -18,7 +20,17 @@ struct Clip {
   float high_m = 0;      ///< d_max_m rounded up
 };
 
+/// The image itself (index 0) or a level of its pyramid, as a rectangle of pixels is looked up in it: at its first pixel
+/// and `back` texels before its last, both shifted.
+struct Texels {
+  std::uint32_t offset = 0;  ///< into the pyramid; 0 for the image
+  std::int32_t width = 0;
+  std::int32_t shift = 0;
+  std::int32_t back = 0;
+};
+
 struct LocalCamera {
+  static constexpr std::size_t kMostTexels = 16;
   // Single precision: what the cube test reads. x_camera = rotation x_local + offset.
   float rotation[9];
   float absolute_rotation[9];
@@ -32,6 +44,7 @@ struct LocalCamera {
   float reach_per_m;   ///< growth of e with the range
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
+  std::array<Texels, kMostTexels> texels{};
   const PyramidLevel* levels = nullptr;
   int level_count = 0;
   int width_px = 0;
