@@ -1,5 +1,6 @@
 #include "depthgrid/search/cube_test.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -23,6 +24,9 @@ using M = hn::Mask<Floats>;
 alignas(64) constexpr float kSignX[8] = {-1, 1, -1, 1, -1, 1, -1, 1};
 alignas(64) constexpr float kSignY[8] = {-1, -1, 1, 1, -1, -1, 1, 1};
 alignas(64) constexpr float kSignZ[8] = {-1, -1, -1, -1, 1, 1, 1, 1};
+
+/// Half the side of a cube over half its diagonal, rounded down.
+constexpr float kHalfOfDiagonal = 0.5773F;
 
 /// Boxes, one a lane: centre and half sides along the world's axes.
 struct Boxes {
@@ -256,7 +260,9 @@ HWY_INLINE Proximities proximities(const CubeQuery& query, const Boxes& boxes) {
   return result;
 }
 
-/// Lanes whose point is out of the camera's view or at most slack and reach before a pixel's free depth along the ray.
+/// Lanes around whose point a camera may have not-free space within slack and reach: the point lies out of its view, or
+/// one of the two by two pixels nearest to it begins to be not free in or before the far face of the box of that half
+/// diagonal around it.
 HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
   const Floats d;
   const Ints di;
@@ -264,40 +270,33 @@ HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local,
   const V x = hn::Add(weighted(camera.rotation, x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
   const V y = hn::Add(weighted(camera.rotation + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
   const V z = hn::Add(weighted(camera.rotation + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
-  const V inverse = hn::Div(hn::Set(d, 1.0F), z);
+  V half = hn::Set(d, slack_m * kHalfOfDiagonal);
+  if (camera.has_reach) {
+    const V reach = hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), length(x, y, z)));
+    half = hn::Add(half, hn::Mul(reach, hn::Set(d, kHalfOfDiagonal)));
+  }
+  const V z_far = hn::Add(z, half);
+  const V inverse = hn::Div(hn::Set(d, 1.0F), z_far);
   const V u = hn::Add(hn::Mul(hn::Mul(x, inverse), hn::Set(d, camera.fx)), hn::Set(d, camera.cx));
   const V v = hn::Add(hn::Mul(hn::Mul(y, inverse), hn::Set(d, camera.fy)), hn::Set(d, camera.cy));
   const M in_view = hn::And(hn::And(hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, camera.width))),
                                     hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, camera.height)))),
                             hn::Gt(z, hn::Set(d, camera.blind_m)));
-  const I column = hn::ConvertTo(di, hn::IfThenElseZero(in_view, u));
-  const I row = hn::ConvertTo(di, hn::IfThenElseZero(in_view, v));
-  const V free_m = hn::GatherIndex(d, camera.free_m, hn::Add(hn::Mul(row, hn::Set(di, camera.width_px)), column));
-  const V range = length(x, y, z);
-  V slack = hn::Set(d, slack_m);
-  if (camera.has_reach) {
-    slack = hn::Add(slack, hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range)));
-  }
-  const M near = hn::Le(hn::Mul(hn::Sub(free_m, z), range), hn::Mul(slack, z));
-  return hn::Or(hn::Not(in_view), near);
-}
-
-/// The same, a little to all sides: lanes around whose point the camera does not free a box of which no point is farther
-/// than slack and reach.
-HWY_INLINE M touches_around(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
-  const Floats d;
-  const V x = hn::Add(weighted(camera.rotation, x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
-  const V y = hn::Add(weighted(camera.rotation + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
-  const V z = hn::Add(weighted(camera.rotation + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
-  V slack = hn::Set(d, slack_m);
-  if (camera.has_reach) {
-    slack = hn::Add(slack, hn::Add(hn::Set(d, camera.reach_m),
-                                   hn::Mul(hn::Set(d, camera.reach_per_m), length(x, y, z))));
-  }
-  const V half = hn::Mul(slack, hn::Set(d, 0.577F));
-  const Bounds bounds{hn::Sub(x, half), hn::Add(x, half), hn::Sub(y, half),
-                      hn::Add(y, half), hn::Sub(z, half), hn::Add(z, half)};
-  return hn::Not(freed_whole(camera, bounds));
+  // The pixels that the far face reaches, at most half a pixel away.
+  const V side = hn::Min(hn::Mul(half, hn::Mul(inverse, hn::Set(d, std::min(camera.fx, camera.fy)))), hn::Set(d, 0.5F));
+  const auto pixel = [&](V coordinate, float size) HWY_ATTR {
+    return hn::ConvertTo(di, hn::IfThenElseZero(in_view, clamp(coordinate, zero, hn::Set(d, size - 1))));
+  };
+  const I u0 = pixel(hn::Sub(u, side), camera.width);
+  const I u1 = pixel(hn::Add(u, side), camera.width);
+  const I width = hn::Set(di, camera.width_px);
+  const I row0 = hn::Mul(pixel(hn::Sub(v, side), camera.height), width);
+  const I row1 = hn::Mul(pixel(hn::Add(v, side), camera.height), width);
+  const float* HWY_RESTRICT values = camera.free_m;
+  const V free_m =
+      hn::Min(hn::Min(hn::GatherIndex(d, values, hn::Add(row0, u0)), hn::GatherIndex(d, values, hn::Add(row0, u1))),
+              hn::Min(hn::GatherIndex(d, values, hn::Add(row1, u0)), hn::GatherIndex(d, values, hn::Add(row1, u1))));
+  return hn::Or(hn::Not(in_view), hn::Le(free_m, z_far));
 }
 
 /// Lanes of `open` that stay open after every camera has been asked.
@@ -354,7 +353,6 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
   const V half = hn::Set(d, half_m);
   children.count = 0;
   children.touching = 0;
-  const bool fine = half_m <= 4 * query.slack_m;
   for (std::size_t first = 0; first < 8; first += hn::Lanes(d)) {
     const V x = hn::Add(hn::Set(d, parent.x), hn::Mul(hn::Load(d, kSignX + first), half));
     const V y = hn::Add(hn::Set(d, parent.y), hn::Mul(hn::Load(d, kSignY + first), half));
@@ -386,8 +384,7 @@ void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound
     M touching = open;
     for (std::size_t n = 0; n < query.camera_count && ((n & 1U) != 0 || !hn::AllFalse(d, touching)); ++n) {
       const LocalCamera& camera = query.cameras[query.order[n]];
-      touching = hn::And(touching, fine ? touches_around(camera, near.near_x, near.near_y, near.near_z, query.slack_m)
-                                        : touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
+      touching = hn::And(touching, touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
     }
     std::uint8_t open_bits[8] = {};
     std::uint8_t touching_bits[8] = {};

@@ -33,8 +33,8 @@ struct CubeQuery {
 struct Children {
   std::array<Cube, 8> cubes;
   int count = 0;
-  /// Bit i: in each camera, the point of cube i that is nearest to the axis seems to be no farther than slack and reach
-  /// from not-free space, measured along the ray. A hint: single precision, and islands are not looked at.
+  /// Bit i: every camera seems to have not-free space within slack and reach of the point of cube i that is nearest to
+  /// the axis. A hint: in single precision, roughly for segments, and the robot's islands are not looked at.
   std::uint32_t touching = 0;
 };
 

@@ -12,6 +12,8 @@ namespace {
 constexpr double kSqrt3 = 1.7320508075688772;
 /// How finely the border of a frustum W is resolved: the nearest point may lie this far outside of W.
 constexpr double kBorderResolution = 0.5e-3;
+/// Half side over distance at which a cube counts as one piece of the mean direction.
+constexpr double kFineness = 1.0 / 6;
 /// The clock is read once in so many cubes.
 constexpr int kClockInterval = 64;
 /// Primitives this near to each other share an origin, metres. Single precision resolves a micrometre there.
@@ -25,29 +27,36 @@ bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camer
   return pixel.x_px >= 0 && pixel.y_px >= 0 && pixel.x_px < camera.width_px && pixel.y_px < camera.height_px;
 }
 
-/// x lies in the camera's not-free set, or at most slack and reach before its pixel's free depth along the ray.
+/// x lies in the camera's not-free set, or one of the two by two pixels nearest to x has some of it within slack and
+/// reach of x.
 bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
   const Eigen::Vector3d x = camera.to_camera(x_local);
   if (!(x.z() > camera.near_m) || !projects_inside(camera.pinhole, x)) {
     return true;
   }
-  const DepthPoint pixel = project(camera.pinhole, x);
-  const auto u = static_cast<int>(pixel.x_px);
-  const auto v = static_cast<int>(pixel.y_px);
-  const auto free_m = static_cast<double>(camera.view->free_m().at(u, v));
-  if (x.z() >= free_m) {
-    // In the robot's island it is the robot.
-    return !camera.has_islands || !(x.z() >= static_cast<double>(camera.view->island_near_m().at(u, v)) &&
-                                    x.z() <= static_cast<double>(camera.view->island_far_m().at(u, v)));
+  // A point of the far face of a cube around x, whose half diagonal is slack and reach, is near enough.
+  const double half_m = (slack_m + (camera.has_reach ? camera.reach(x) : 0.0)) / kSqrt3;
+  const double z_m = x.z() + half_m;
+  const PinholeCamera& c = camera.pinhole;
+  const double side_px = std::min(0.5, half_m * std::min(c.fx_px, c.fy_px) / z_m);
+  const double u_px = c.fx_px * x.x() / z_m + c.cx_px;
+  const double v_px = c.fy_px * x.y() / z_m + c.cy_px;
+  const auto column = [&](double px) { return static_cast<int>(std::clamp(px, 0.0, c.width_px - 1.0)); };
+  const auto row = [&](double px) { return static_cast<int>(std::clamp(px, 0.0, c.height_px - 1.0)); };
+  const View& view = *camera.view;
+  for (const int v : {row(v_px - side_px), row(v_px + side_px)}) {
+    for (const int u : {column(u_px - side_px), column(u_px + side_px)}) {
+      if (z_m < static_cast<double>(view.free_m().at(u, v))) {
+        continue;
+      }
+      // In the robot's island it is the robot.
+      if (!camera.has_islands || !(z_m >= static_cast<double>(view.island_near_m().at(u, v)) &&
+                                   z_m <= static_cast<double>(view.island_far_m().at(u, v)))) {
+        return true;
+      }
+    }
   }
-  const double slack_along_m = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
-  return (free_m - x.z()) * x.norm() <= slack_along_m * x.z();
-}
-
-/// Some point of the camera's not-free set is no farther from x than slack and reach.
-bool near_blocked(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
-  const Eigen::Vector3d x = camera.to_camera(x_local);
-  return meets_not_free(camera, camera.space, x, slack_m + (camera.has_reach ? camera.reach(x) : 0.0));
+  return false;
 }
 
 }  // namespace
@@ -164,12 +173,11 @@ bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
 }
 
 /// Every camera has x in its not-free set, or nearly so along the ray, and x counts.
-bool Descent::is_blocked(const Eigen::Vector3d& x_local) const noexcept {
-  const double slack_m = settings_.resolution_m - 1e-5;
+bool Descent::is_blocked(const Eigen::Vector3d& x_local, double slack_m) const noexcept {
   bool covered = !query_.uncovered_ignored;
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
-    if (!blocks(camera, x_local, slack_m) && !near_blocked(camera, x_local, slack_m)) {
+    if (!blocks(camera, x_local, slack_m)) {
       return false;
     }
     if (!covered) {
@@ -229,7 +237,7 @@ void Descent::take(const Children& children, Nearest& best) noexcept {
     if (((children.touching >> i) & 1U) != 0) {
       const Box box = box_of(child);
       const AxisToBox pair = nearest(a_local_, b_local_, box.low, box.high);
-      if (is_blocked(pair.in_box)) {
+      if (is_blocked(pair.in_box, settings_.resolution_m - 1e-5)) {
         offer(child, best);
         continue;
       }
@@ -252,7 +260,7 @@ Nearest Descent::find(double limit_m, Allowance& allowance) noexcept {
   best.distance_m = limit_m;
   frontier_.reset(static_cast<float>(limit_m));
   const Eigen::Vector3d middle = 0.5 * (a_local_ + b_local_);
-  if (is_blocked(middle)) {
+  if (is_blocked(middle, settings_.resolution_m - 1e-5)) {
     return {0.0, true, false, middle, middle};
   }
   static_cast<void>(frontier_.push(root_));
@@ -282,6 +290,43 @@ Nearest Descent::find(double limit_m, Allowance& allowance) noexcept {
     take(children, best);
   }
   return best;
+}
+
+Eigen::Vector3d Descent::mean_direction(Allowance& allowance) noexcept {
+  const double limit_m = settings_.rho_m + radius_m_;
+  const double least_half_m = settings_.rho_m / 32;
+  frontier_.reset(static_cast<float>(limit_m));
+  static_cast<void>(frontier_.push(root_));
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double total = 0;
+  Cube cube{};
+  Children children;
+  while (frontier_.pop(cube) && allowance.nodes > 0) {
+    --allowance.nodes;
+    ++count_.nodes;
+    split(query_, cube, half_side_m(cube.level + 1), rounded_up(limit_m), children);
+    for (int i = 0; i < children.count; ++i) {
+      const Cube& child = children.cubes[static_cast<std::size_t>(i)];
+      const double half_m = static_cast<double>(half_side_m(child.level));
+      const Box box = box_of(child);
+      const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
+      const AxisToBox pair = nearest(a_local_, b_local_, centre, centre);
+      if (half_m > std::max(least_half_m, kFineness * pair.distance_m)) {
+        static_cast<void>(frontier_.push(child));  // without room the direction is only coarser
+        continue;
+      }
+      const double distance_m = pair.distance_m - radius_m_;
+      if (distance_m >= settings_.rho_m || !(pair.distance_m > 0) || !is_blocked(centre, 0)) {
+        continue;
+      }
+      const double repulsion =
+          1 / (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
+      const double weight = repulsion * (box.high - box.low).prod();
+      sum += weight / pair.distance_m * (centre - pair.on_axis);
+      total += weight;
+    }
+  }
+  return total > 0 ? (sum / total).eval() : Eigen::Vector3d::Zero();
 }
 
 }  // namespace depthgrid::search

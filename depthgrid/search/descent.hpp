@@ -40,6 +40,11 @@ class Descent {
   /// ends the search.
   [[nodiscard]] Nearest find(double limit_m, Allowance& allowance) noexcept;
 
+  /// Mean of the unit vectors from the axis to all obstacle space within rho of the primitive's surface, weighted by
+  /// volume and by the repulsion v(D) = 1 / (1 + exp((2 D / rho - 1) alpha)). Cubes are split until their side is about a
+  /// third of their distance or 1/16 of rho, and count as their centre does. Zero when there is no such space.
+  [[nodiscard]] Eigen::Vector3d mean_direction(Allowance& allowance) noexcept;
+
   [[nodiscard]] const Eigen::Vector3d& origin_world() const noexcept { return origin_world_; }
 
  private:
@@ -50,7 +55,7 @@ class Descent {
   void set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept;
   [[nodiscard]] Box box_of(const Cube& cube) const noexcept;
   [[nodiscard]] float half_side_m(int level) const noexcept { return half_m_[static_cast<std::size_t>(level)]; }
-  [[nodiscard]] bool is_blocked(const Eigen::Vector3d& x_local) const noexcept;
+  [[nodiscard]] bool is_blocked(const Eigen::Vector3d& x_local, double slack_m) const noexcept;
   [[nodiscard]] bool in_space(const Eigen::Vector3d& x_local) const noexcept;
   [[nodiscard]] bool is_free(const Cube& cube) noexcept;
   [[nodiscard]] bool is_leaf(const Cube& cube) noexcept;

@@ -29,6 +29,10 @@ struct Search::State {
 
   static void answer(const Snapshot& snapshot, const Primitive& primitive, Descent& descent, Allowance& allowance,
                      Answer& result) noexcept;
+  static void add_hybrid(const Snapshot& snapshot, const Primitive& primitive, Descent& descent, Allowance& allowance,
+                         Answer& result) noexcept;
+  void call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+            const Budget& budget, Count* count, bool with_direction) noexcept;
 
   Settings settings;
   CubeQuery query;
@@ -97,10 +101,23 @@ Search::~Search() = default;
 Search::Search(Search&&) noexcept = default;
 Search& Search::operator=(Search&&) noexcept = default;
 
-void Search::distances(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
-                       const Budget& budget, Count* count) noexcept {
+/// V = n + b (t - (t.n) n), normalised: the nearest direction leads, the others only turn it.
+void Search::State::add_hybrid(const Snapshot& snapshot, const Primitive& primitive, Descent& descent,
+                               Allowance& allowance, Answer& result) noexcept {
+  const Eigen::Vector3d n = result.nearest.direction_world;
+  if (!n.allFinite() || n.isZero() || result.nearest.budget) {
+    return;
+  }
+  const Settings& s = snapshot.settings();
+  descent.aim(primitive, s.rho_m + primitive.radius_m);
+  const Eigen::Vector3d t = descent.mean_direction(allowance);
+  result.hybrid_direction_world = (n + s.direction_blend * (t - t.dot(n) * n)).normalized();
+}
+
+void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+                         const Budget& budget, Count* count, bool with_direction) noexcept {
   Count own;
-  Count& counted = count != nullptr ? *count : own;
+  Descent descent(snapshot, query, frontier, count != nullptr ? *count : own);
   std::int64_t nodes_left = budget.nodes > 0 ? budget.nodes : std::numeric_limits<std::int64_t>::max();
   Allowance allowance;
   allowance.timed = budget.time_s > 0;
@@ -109,18 +126,30 @@ void Search::distances(const Snapshot& snapshot, std::span<const Primitive> prim
                          std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                              std::chrono::duration<double>(std::min(budget.time_s, 1e6)));
   }
-  Descent descent(snapshot, state_->query, state_->frontier, counted);
   const std::size_t both = std::min(primitives.size(), answers.size());
   for (std::size_t i = 0; i < both; ++i) {
     // What the primitives before have left is shared evenly by the rest.
     const auto share = nodes_left / static_cast<std::int64_t>(both - i);
     allowance.nodes = share;
-    State::answer(snapshot, primitives[i], descent, allowance, answers[i]);
+    answer(snapshot, primitives[i], descent, allowance, answers[i]);
+    if (with_direction) {
+      add_hybrid(snapshot, primitives[i], descent, allowance, answers[i]);
+    }
     nodes_left -= share - allowance.nodes;
   }
   for (std::size_t i = both; i < answers.size(); ++i) {
     answers[i] = Answer{};
   }
+}
+
+void Search::distances(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+                       const Budget& budget, Count* count) noexcept {
+  state_->call(snapshot, primitives, answers, budget, count, false);
+}
+
+void Search::hybrid(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+                    const Budget& budget, Count* count) noexcept {
+  state_->call(snapshot, primitives, answers, budget, count, true);
 }
 
 }  // namespace depthgrid::search
