@@ -64,9 +64,10 @@ class Asker {
 /// Random problems one after the other until a check fails: check(problem, random), `random` for the test's own
 /// choices. A failure names the problem by a line that reference::parse_options() takes.
 template <class Check>
-void for_random_problems(std::int64_t default_count, reference::RandomOptions options, Check&& check) {
+void for_random_problems(std::int64_t default_count, const reference::RandomOptions& given, Check&& check) {
   const test::RandomRun run = test::random_run(default_count);
   for (std::int64_t i = 0; i < run.count && !testing::Test::HasFailure(); ++i) {
+    reference::RandomOptions options = given;
     options.seed = run.seed + static_cast<std::uint64_t>(i);
     if (!options.width_px) {
       options.width_px = 16 + 8 * static_cast<int>(options.seed % 5);
