@@ -235,8 +235,8 @@ void add_distances_command(CLI::App& app) {
       "  depthgrid distances ../shared/data/kinect3_ball --point hand=0.1,2.6,1.2 --in floor --frames 0:80:8\n"
       "  depthgrid distances rig.json --cameras cam1,cam3 --principal cam3 --points points.csv \\\n"
       "      --sensor kinect_v1 --format jsonl --output distances.jsonl\n"
-      "  depthgrid distances ../shared/data/kinect3_ball --point hand=0.1,2.6,1.2,0.05 --in floor --frames 0:80:8 \\\n"
-      "      --method search --sensor kinect_v1 --margin-translation 0.05 --v-max 2 --box=-2,0,0,2,5,2.5 \\\n"
+      "  depthgrid distances ../shared/data/kinect3_ball --point=-0.2,-0.8,2.9,0.05 --frames 0:80:8 \\\n"
+      "      --method search --sensor kinect_v1 --margin-translation 0.05 --v-max 2 --box=-3,-3,0.5,3,3,6 \\\n"
       "      --unobserved obstacle --outside ignored --robot-pockets obstacle\n"
       "One line a frame and point. distance_m is empty (null) where it is not known; see docs/command.md.");
   command->callback([options] { run(*options); });

@@ -1,7 +1,5 @@
 #include "depthgrid/app/search_frame_evaluator.hpp"
 
-#include "depthgrid/app/usage_error.hpp"
-
 namespace depthgrid::app {
 
 namespace {
@@ -27,7 +25,11 @@ class SearchFrameEvaluator final : public FrameEvaluator {
     }
     std::vector<search::Answer> found(primitives.size());
     const search::Snapshot snapshot = store_.snapshot();
-    search_.distances(snapshot, primitives, found, budget_);
+    if (hybrid_) {
+      search_.hybrid(snapshot, primitives, found, budget_);
+    } else {
+      search_.distances(snapshot, primitives, found, budget_);
+    }
     std::vector<PointAnswer> answers;
     answers.reserve(found.size());
     for (const search::Answer& answer : found) {
@@ -49,9 +51,6 @@ class SearchFrameEvaluator final : public FrameEvaluator {
 
 std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const search::Settings& settings,
                                                       const search::Budget& budget, bool hybrid) {
-  if (hybrid) {
-    fail_usage("--collect hybrid does not go with --method search yet");
-  }
   return std::make_unique<SearchFrameEvaluator>(rig, settings, budget, hybrid);
 }
 

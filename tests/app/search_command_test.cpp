@@ -96,6 +96,19 @@ TEST(SearchCommand, JsonLinesHaveTheShapesToo) {
               HasSubstr(R"("radius_m":0.1,"end_m":[0.2,0.1,1.8],"on_axis_m":[0.200000,0.100000,1.800000])"));
 }
 
+/// Before the middle of the wall both directions are the wall's normal; near its seen edge the others pull to one side.
+TEST(SearchCommand, HybridDirectionsAreUnitVectorsNearTheNearest) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto rows =
+      rows_of(run_command(kSearch + kPoint + "--point far=0.2,0,1.2 --sensor ideal --collect hybrid", folder));
+  const Eigen::Vector3d hybrid(rows.at(0).number("hybrid_x"), rows.at(0).number("hybrid_y"),
+                               rows.at(0).number("hybrid_z"));
+  EXPECT_NEAR(hybrid.norm(), 1.0, 1e-5);
+  EXPECT_GT(hybrid.z(), 0.99);
+  EXPECT_EQ(rows.at(1).number("hybrid_z"), 0.0) << "nothing within rho";
+}
+
 /// The floor frame of the recording is the world moved by a metre: so is the box then.
 TEST(SearchCommand, TheBoxStandsInTheFrameOfThePoints) {
   const TemporaryFolder folder;
