@@ -1,5 +1,5 @@
-// Quick start of the depth grid, the letter's method: as quickstart.cpp, with the grid's evaluator. One camera spans the
-// grid and sees all space of interest, the cameras stand still, and the answers are for points.
+// Quick start of the depth grid, the letter's method: as quickstart.cpp, with the grid's evaluator. One camera spans
+// the grid and sees all space of interest, the cameras stand still, and the answers are for points.
 //
 //   c++ -std=c++20 grid_quickstart.cpp $(the flags of depthgrid::grid)     or see examples/consumer for CMake
 //

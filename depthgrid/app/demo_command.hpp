@@ -8,7 +8,7 @@ namespace depthgrid::app {
 
 struct DemoOptions {
   std::string method = "corrected";  ///< letter, corrected or search
-  std::string picture;  ///< PNG file; empty: no picture
+  std::string picture;               ///< PNG file; empty: no picture
 };
 
 /// Renders the scene, evaluates the control points, prints the table and writes the picture. Throws Error.
