@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
-
-#include "depthgrid/core/error.hpp"
 
 namespace depthgrid::reference {
 namespace {
@@ -50,14 +47,24 @@ void add_obstacles(Random& random, bool thin, simulation::Scene& scene) {
   }
 }
 
-void add_robot(Random& random, simulation::Scene& scene) {
+/// Returns the first link's middle.
+Vector3d add_robot(Random& random, simulation::Scene& scene) {
   const int links = random.integer(1, 3);
   Vector3d joint = random.in_cube(0.35);
+  Vector3d middle = joint;
   for (int i = 0; i < links; ++i) {
     const Vector3d next = joint + 0.35 * random.direction();
     scene.add(simulation::Capsule{joint, next, random.uniform(0.03, 0.08)}, simulation::Body::robot);
+    middle = i == 0 ? (0.5 * (joint + next)).eval() : middle;
     joint = next;
   }
+  return middle;
+}
+
+/// Something small between the robot and a camera, so that the camera sees it and not the robot there.
+void add_hand(Random& random, const Vector3d& robot, const Vector3d& camera, simulation::Scene& scene) {
+  const Vector3d towards = (camera - robot).normalized();
+  scene.add(simulation::Sphere{robot + random.uniform(0.15, 0.3) * towards, random.uniform(0.02, 0.06)});
 }
 
 RigCamera random_camera(Random& random, std::size_t index, std::optional<int> width_px) {
@@ -140,71 +147,6 @@ Vector3d Random::direction() {
   }
 }
 
-std::string to_line(const RandomOptions& options) {
-  std::ostringstream line;
-  line.precision(17);
-  line << "seed=" << options.seed;
-  const auto put = [&line](const char* name, const auto& value) {
-    if (value) {
-      line << ' ' << name << '=' << *value;
-    }
-  };
-  put("cameras", options.cameras);
-  put("width", options.width_px);
-  put("rho", options.rho_m);
-  put("step", options.step_m);
-  put("margins", options.margins);
-  put("lateral", options.lateral);
-  put("invalid", options.invalid);
-  put("robot", options.robot);
-  put("units", options.units);
-  put("outside", options.outside);
-  put("thin", options.thin);
-  return line.str();
-}
-
-RandomOptions parse_options(const std::string& line) {
-  RandomOptions options;
-  std::istringstream words(line);
-  for (std::string word; words >> word;) {
-    const std::size_t at = word.find('=');
-    const std::string name = word.substr(0, at);
-    const std::string value = at == std::string::npos ? "" : word.substr(at + 1);
-    const auto flag = [&value] { return std::optional<bool>(value == "1"); };
-    if (value.empty() || value.find_first_not_of("0123456789.e+-") != std::string::npos) {
-      fail("problem line: '", word, "' is not of the form name=number");
-    }
-    if (name == "seed") {
-      options.seed = std::stoull(value);
-    } else if (name == "cameras") {
-      options.cameras = std::stoi(value);
-    } else if (name == "width") {
-      options.width_px = std::stoi(value);
-    } else if (name == "rho") {
-      options.rho_m = std::stod(value);
-    } else if (name == "step") {
-      options.step_m = std::stod(value);
-    } else if (name == "margins") {
-      options.margins = flag();
-    } else if (name == "lateral") {
-      options.lateral = flag();
-    } else if (name == "invalid") {
-      options.invalid = flag();
-    } else if (name == "robot") {
-      options.robot = flag();
-    } else if (name == "units") {
-      options.units = flag();
-    } else if (name == "outside") {
-      options.outside = flag();
-    } else if (name == "thin") {
-      options.thin = flag();
-    } else {
-      fail("problem line: '", word, "' is unknown");
-    }
-  }
-  return options;
-}
-
 void RandomProblem::refer_frames() {
   frames.clear();
   for (std::size_t k = 0; k < views.size(); ++k) {
@@ -262,12 +204,14 @@ RandomProblem make_random_problem(const RandomOptions& options) {
     problem.pose.time_m = random.chance(0.5) ? random.uniform(0, 0.01) : 0.0;
   }
   add_obstacles(random, thin, problem.scene);
-  if (robot) {
-    add_robot(random, problem.scene);
-  }
+  const Vector3d link = robot ? add_robot(random, problem.scene) : Vector3d::Zero();
   problem.rig.name = "random " + std::to_string(options.seed);
   for (int k = 0; k < cameras; ++k) {
     problem.rig.cameras.push_back(random_camera(random, static_cast<std::size_t>(k), options.width_px));
+  }
+  if (robot && options.hand.value_or(false)) {
+    Random extra(options.seed * 0x9E3779B97F4A7C15U + 2);  // leaves the draws of problems without a hand as they are
+    add_hand(extra, link, problem.rig.cameras.front().T_world_camera.translation(), problem.scene);
   }
   problem.principal = static_cast<std::size_t>(random.integer(0, cameras - 1));
   problem.d_min_m = random.uniform(0.2, 0.5);

@@ -37,6 +37,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
+enum class Shape : std::uint8_t { point, sphere, capsule };
+
 /// Everything that is not set is drawn from the seed.
 struct RandomOptions {
   std::uint64_t seed = 1;
@@ -51,6 +53,18 @@ struct RandomOptions {
   std::optional<bool> units;     ///< 16-bit depth in millimetres instead of float metres
   std::optional<bool> outside;   ///< space outside W is an obstacle
   std::optional<bool> thin;      ///< only thin objects
+  std::optional<bool> hand;      ///< something right before the robot; not drawn: none unless it is set
+
+  // For make_search_problem() only.
+  std::optional<bool> box;             ///< W is a box in the world, else the principal camera's view
+  std::optional<bool> unobserved;      ///< space that no camera covers is an obstacle, else ignored
+  std::optional<bool> pockets;         ///< robot pixels free a little more than the robot
+  std::optional<bool> skew;            ///< the cameras expose at different times
+  std::optional<bool> moved;           ///< the cameras do not stand where the rig says
+  std::optional<bool> missing;         ///< one camera has not sent an image
+  std::optional<double> resolution_m;  ///< of the search
+  std::optional<Shape> primitive;      ///< of all queries
+  std::optional<int> query;            ///< the only query of interest; the others are asked too
 };
 
 /// One line that make_random_problem(parse_options(line)) turns into the same problem: "seed=7 cameras=2 robot=1".

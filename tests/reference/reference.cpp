@@ -118,6 +118,18 @@ double Reference::distance_to_border_m(const Primitive& primitive) const {
   return std::max(0.0, axis_distance_m(primitive, nearest_border_point(primitive)) - primitive.radius_m);
 }
 
+double Reference::outside_by_m(const Eigen::Vector3d& p_world) const {
+  if (const auto* box = std::get_if<WorldBox>(&space_)) {
+    return std::max((box->low - p_world).maxCoeff(), (p_world - box->high).maxCoeff());
+  }
+  const auto& frustum = std::get<FrustumSpace>(space_);
+  const CameraSpace& camera = cameras_[frustum.principal];
+  const Eigen::Vector3d p = camera.to_camera(p_world);
+  const auto inside_m = camera.inside_m(p);
+  return std::max(
+      {-*std::min_element(inside_m.begin(), inside_m.end()), frustum.d_min_m - p.z(), p.z() - frustum.d_max_m});
+}
+
 Interval Reference::distance(const Primitive& primitive, const SearchSettings& settings) const {
   Interval result;
   if (!in_space(primitive)) {

@@ -87,6 +87,8 @@ class Reference {
   }
   /// From the surface of a primitive whose axis lies in W to W's border, 0 where it reaches out.
   [[nodiscard]] double distance_to_border_m(const Primitive& primitive) const;
+  /// How far a point lies beyond the outermost of W's six border planes; negative inside W.
+  [[nodiscard]] double outside_by_m(const Eigen::Vector3d& p_world) const;
   /// Some camera covers the point, whatever it measured.
   [[nodiscard]] bool covered(const Eigen::Vector3d& p_world) const;
   [[nodiscard]] std::size_t camera_count() const { return cameras_.size(); }

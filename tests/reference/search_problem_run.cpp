@@ -1,0 +1,41 @@
+#include "reference/search_problem_run.hpp"
+
+namespace depthgrid::reference {
+namespace {
+
+search::Snapshot deliver(const SearchProblem& problem, search::ViewStore& store) {
+  for (std::size_t k = 0; k < problem.frames.size(); ++k) {
+    if (!problem.present(k)) {
+      continue;
+    }
+    if (problem.moved) {
+      store.update(k, problem.frames[k], problem.scene.rig.cameras[k].T_world_camera);
+    } else {
+      store.update(k, problem.frames[k]);
+    }
+  }
+  return store.snapshot();
+}
+
+}  // namespace
+
+// Calls of one, of a few and of all primitives, by the seed.
+SearchRun::SearchRun(const SearchProblem& problem)
+    : problem_(&problem),
+      store_(problem.rig, problem.settings, 1),
+      snapshot_(deliver(problem, store_)),
+      search_(problem.settings, std::size_t{1} << (problem.options.seed % 8)) {}
+
+std::vector<search::Answer> SearchRun::distances(const search::Budget& budget) {
+  std::vector<search::Answer> answers(problem_->primitives.size());
+  search_.distances(snapshot_, problem_->primitives, answers, budget);
+  return answers;
+}
+
+std::vector<search::Answer> SearchRun::hybrid() {
+  std::vector<search::Answer> answers(problem_->primitives.size());
+  search_.hybrid(snapshot_, problem_->primitives, answers);
+  return answers;
+}
+
+}  // namespace depthgrid::reference

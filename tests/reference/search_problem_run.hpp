@@ -1,0 +1,27 @@
+// The sound search, asked a random problem.
+#pragma once
+
+#include <vector>
+
+#include "depthgrid/search/search.hpp"
+#include "reference/search_problem.hpp"
+
+namespace depthgrid::reference {
+
+/// A store that has taken the problem's frames, its snapshot, and a search. The problem must outlive it.
+class SearchRun {
+ public:
+  explicit SearchRun(const SearchProblem& problem);
+
+  /// To all primitives, in one call.
+  [[nodiscard]] std::vector<search::Answer> distances(const search::Budget& budget = {});
+  [[nodiscard]] std::vector<search::Answer> hybrid();
+
+ private:
+  const SearchProblem* problem_;
+  search::ViewStore store_;
+  search::Snapshot snapshot_;
+  search::Search search_;
+};
+
+}  // namespace depthgrid::reference
