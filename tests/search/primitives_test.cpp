@@ -62,7 +62,7 @@ constexpr double kTouchM = 2e-5;
 
 TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
   int told = 0;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     Asker grown(with_reach(setup, setup.settings.resolution_m));
@@ -87,7 +87,7 @@ TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
   int told = 0;
   reference::RandomOptions options;
   options.cameras = 1;
-  for_random_problems(150, options, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, options, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     const double shortfall_m = setup.settings.resolution_m / (1 - setup.settings.margins[0].rotation_rad);
     Asker asker(setup);
@@ -110,7 +110,7 @@ TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
 /// On the way there no point of the primitive lies in the obstacle.
 TEST(MovedByItsAnswer, MeetsNothingOnTheWay) {
   int told = 0;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     const Reference oracle(oracle_problem(setup));
@@ -138,7 +138,7 @@ TEST(MovedByItsAnswer, MeetsNothingOnTheWay) {
 
 TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
   int told = 0;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -160,7 +160,7 @@ TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
 /// The points of the axis are sampled; between two samples D changes by at most half their distance.
 TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
   int told = 0;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(40, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -189,7 +189,7 @@ TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
 
 TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
   int told = 0;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
@@ -199,7 +199,8 @@ TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
         continue;
       }
       const Vector3d to_nearest = answer.nearest.nearest_world - answer.on_axis_world;
-      EXPECT_NEAR(to_nearest.norm() - link.radius_m, answer.nearest.distance_m, kRounding + kDoubleRounding)
+      // Rounding is not left to luck: every answer is shorter by it.
+      EXPECT_NEAR(to_nearest.norm() - link.radius_m - kRounding, answer.nearest.distance_m, kDoubleRounding)
           << to_text(link);
       EXPECT_NEAR((to_nearest.normalized() - answer.nearest.direction_world).norm(), 0, 1e-9) << to_text(link);
       const Vector3d axis = link.b_world - link.a_world;
@@ -221,7 +222,7 @@ TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
 
 /// Ends that differ by less than any resolution, down to the smallest number there is.
 TEST(Capsules, OfHardlyAnyLengthAreSpheres) {
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {

@@ -70,7 +70,7 @@ SpaceKind random_space(Random& random) { return random.chance(0.5) ? SpaceKind::
 
 TEST(Properties, SeveralCamerasKnowAtLeastWhatEachOfThemKnows) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random&) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random&) {
     const SearchSetup all = make_setup(problem, SpaceKind::box);
     for (std::size_t k = 0; k < all.rig.cameras.size(); ++k) {
       expect_not_farther({with_cameras(all, {k}), problem.points_world}, {all, problem.points_world}, tally);
@@ -82,7 +82,7 @@ TEST(Properties, SeveralCamerasKnowAtLeastWhatEachOfThemKnows) {
 /// falls short of what one of them proves by no more than that.
 TEST(Properties, SeveralCamerasAnswerAtLeastTheDistanceOfEachLessTheResolution) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random&) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random&) {
     const SearchSetup all = make_setup(problem, SpaceKind::box);
     Asker asker(all);
     for (std::size_t k = 0; k < all.rig.cameras.size(); ++k) {
@@ -101,7 +101,7 @@ TEST(Properties, SeveralCamerasAnswerAtLeastTheDistanceOfEachLessTheResolution) 
 
 TEST(Properties, OneMoreCameraNeverBringsObstaclesNearer) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup all = make_setup(problem, random_space(random));
     const std::size_t count = all.rig.cameras.size();
     const auto* frustum = std::get_if<FrustumSpace>(&all.settings.space);
@@ -138,7 +138,7 @@ void invalidate_pixel_near(RandomProblem& problem, const Vector3d& p_world, Rand
 
 TEST(Properties, APixelWithoutMeasurementNeverMovesObstaclesAway) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     RandomProblem fewer_pixels = reference::make_random_problem(problem.options);
     for (const Vector3d& p_world : problem.points_world) {
       for (int i = 0; i < 3; ++i) {
@@ -153,7 +153,7 @@ TEST(Properties, APixelWithoutMeasurementNeverMovesObstaclesAway) {
 
 TEST(Properties, ALargerSensorMarginNeverMovesObstaclesAway) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     SearchSetup larger = setup;
     const auto k = static_cast<std::size_t>(random.integer(0, static_cast<int>(setup.rig.cameras.size()) - 1));
@@ -180,7 +180,7 @@ TEST(Properties, ALargerSensorMarginNeverMovesObstaclesAway) {
 
 TEST(Properties, ALargerErrorOfPoseOrTimeNeverMovesObstaclesAway) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     SearchSetup setup = make_setup(problem, random_space(random), true);
     const auto k = static_cast<std::size_t>(random.integer(0, static_cast<int>(setup.rig.cameras.size()) - 1));
     setup.settings.v_max_m_s = std::max(setup.settings.v_max_m_s, 1.0);
@@ -211,7 +211,7 @@ TEST(Properties, ALargerErrorOfPoseOrTimeNeverMovesObstaclesAway) {
 
 TEST(Properties, AMotionOfEverythingChangesNothing) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const Question still{make_setup(problem, SpaceKind::frustum, true), problem.points_world};
     Pose motion = Pose::Identity();
     motion.linear() = Eigen::AngleAxisd(random.uniform(-3, 3), random.direction()).toRotationMatrix();
@@ -230,7 +230,7 @@ TEST(Properties, AMotionOfEverythingChangesNothing) {
 
 TEST(Properties, ABoxMovedWithEverythingChangesNothing) {
   Tally tally;
-  for_random_problems(150, {}, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const Question still{make_setup(problem, SpaceKind::box, true), problem.points_world};
     Pose motion = Pose::Identity();
     // A quarter turn about z keeps the box's axes along the world's.
@@ -256,13 +256,40 @@ TEST(Properties, TheOrderOfTheCamerasChangesNothing) {
   Tally tally;
   reference::RandomOptions options;
   options.cameras = 3;
-  for_random_problems(150, options, [&](const RandomProblem& problem, Random& random) {
+  for_random_problems(100, options, [&](const RandomProblem& problem, Random& random) {
     const Question one{make_setup(problem, random_space(random), true), problem.points_world};
     std::vector<std::size_t> order{0, 1, 2};
     std::rotate(order.begin(), order.begin() + random.integer(1, 2), order.end());
     const Question other{with_cameras(one.setup, order), problem.points_world};
     expect_not_farther(one, other, tally);
     expect_not_farther(other, one, tally);
+  });
+}
+
+/// It makes no difference whether the rig knows where the cameras stand or every frame says so.
+TEST(Properties, PosesOfFramesAreThoseOfTheRig) {
+  Tally tally;
+  for_random_problems(30, {}, [&](const RandomProblem& problem, Random& random) {
+    const SearchSetup setup = make_setup(problem, random_space(random), true);
+    Rig elsewhere = setup.rig;
+    for (RigCamera& camera : elsewhere.cameras) {
+      camera.T_world_camera = look_at(random.in_cube(2), random.in_cube(1));
+    }
+    ViewStore store(elsewhere, setup.settings);
+    for (std::size_t k = 0; k < setup.frames.size(); ++k) {
+      ASSERT_EQ(store.update(k, setup.frames[k], setup.rig.cameras[k].T_world_camera), UpdateResult::taken);
+    }
+    Asker asker(setup);
+    Search search(setup.settings);
+    for (const Vector3d& p_world : problem.points_world) {
+      const Primitive primitive = point(p_world);
+      Answer answer;
+      search.distances(store.snapshot(), {&primitive, 1}, {&answer, 1});
+      const Proximity expected = asker.distance(primitive).nearest;
+      EXPECT_EQ(answer.nearest.distance_m, expected.distance_m) << p_world.transpose();
+      EXPECT_EQ(answer.nearest.state, expected.state) << p_world.transpose();
+      tally.telling += expected.distance_m > 0 && expected.distance_m < setup.settings.rho_m ? 1 : 0;
+    }
   });
 }
 
