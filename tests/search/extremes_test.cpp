@@ -330,6 +330,31 @@ TEST(Extremes, AnImageMayHaveOnePixel) {
   }
 }
 
+/// The coarsest level of a pyramid has to do for a cube that fills the view, whatever the image's size.
+TEST(Extremes, AnImageMayHaveAnySize) {
+  for (const int width_px : {3, 8, 9, 12, 13, 16, 17, 24, 25, 32, 48, 49, 64, 96, 200, 400, 800, 848}) {
+    SCOPED_TRACE(width_px);
+    OneCamera one(2.0F, width_px, std::max(1, width_px * 9 / 16));
+    PinholeCamera& pinhole = one.setup.rig.cameras[0].intrinsics;
+    pinhole.fx_px = pinhole.fy_px = width_px;
+    // Something near in the middle of the image only.
+    one.image_m[static_cast<std::size_t>(pinhole.height_px / 2 * width_px + width_px / 2)] = 0.9F;
+    one.setup.settings.rho_m = 2.0;
+    one.setup.settings.policies.unobserved = Policy::ignored;
+    one.setup.settings.policies.outside = Policy::ignored;
+    for (const bool frustum : {false, true}) {
+      if (frustum) {
+        one.setup.settings.space = FrustumSpace{0, 0.3, 2.5};
+      } else {
+        one.setup.settings.space = BoxSpace{{-3, -3, -3}, {3, 3, 3}};
+      }
+      for (const Vector3d& p : {Vector3d(0.01, 0.01, 0.5), Vector3d(0, 0, 0.8), Vector3d(0.1, 0.05, 1.1)}) {
+        expect_within_oracle(one.setup, p);
+      }
+    }
+  }
+}
+
 TEST(Extremes, AnImageWithoutMeasurementsFreesNothing) {
   OneCamera one(0.0F);
   const Answer answer = Asker(one.setup).distance(point({0, 0, 1}));
