@@ -8,20 +8,20 @@ namespace depthgrid::bench {
 namespace {
 
 PeerKind nanoflann_kind(const char* name, const NanoflannSettings& settings) {
-  return {name,  "nanoflann",
+  return {name,  "k-d tree",
           false, false,
           8,     [settings](const PeerSetting& setting) { return std::make_unique<NanoflannPeer>(setting, settings); }};
 }
 
 PeerKind pcl_kind(const char* name, const PclSettings& settings) {
-  return {name,  "PCL",
+  return {name,  "k-d tree",
           false, false,
           8,     [settings](const PeerSetting& setting) { return std::make_unique<PclPeer>(setting, settings); }};
 }
 
 PeerKind edt_kind(const char* name, const EdtSettings& settings, int most_cameras) {
   return {name,
-          "OctoMap + dynamicEDT3D",
+          "OctoMap",
           settings.unknown_is_occupied,
           true,
           most_cameras,
@@ -30,7 +30,7 @@ PeerKind edt_kind(const char* name, const EdtSettings& settings, int most_camera
 
 PeerKind fcl_kind(const char* name, double resolution_m, int most_cameras) {
   return {name,
-          "FCL on OctoMap",
+          "OctoMap",
           false,
           true,
           most_cameras,

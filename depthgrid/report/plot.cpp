@@ -73,7 +73,9 @@ void draw_legend(Canvas& canvas, const Rectangle& frame, const std::vector<Serie
   for (std::size_t i = 0; i < series.size(); ++i) {
     const double y_px = box.y_px + (static_cast<double>(i) + 0.5) * line_px;
     const Colour colour = series_colour(static_cast<unsigned>(i));
-    canvas.line({box.x_px, y_px}, {box.x_px + 24, y_px}, {colour, 2});
+    if (series[i].joined) {
+      canvas.line({box.x_px, y_px}, {box.x_px + 24, y_px}, {colour, 2});
+    }
     if (series[i].markers) {
       canvas.disc({box.x_px + 12, y_px}, 3.5, colour);
     }
@@ -178,7 +180,9 @@ void draw_plot(Canvas& canvas, const Rectangle& area, const Plot& plot) {
     for (std::size_t k = 0; k < s.x.size(); ++k) {
       points.push_back({x.pixel(s.x[k]), y.pixel(s.y[k])});
     }
-    canvas.polyline(points, {colour, 2});
+    if (s.joined) {
+      canvas.polyline(points, {colour, 2});
+    }
     for (const CanvasPoint& p : s.markers ? points : std::vector<CanvasPoint>{}) {
       canvas.disc(p, 3.5, colour);
     }

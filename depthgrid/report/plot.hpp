@@ -15,6 +15,7 @@ struct Series {
   std::vector<double> x;
   std::vector<double> y;
   bool markers = true;
+  bool joined = true;  ///< false: markers only
 };
 
 struct Plot {

@@ -1,0 +1,56 @@
+#include "markdown.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace depthgrid::bench {
+namespace {
+
+std::string line(const std::vector<std::string>& cells) {
+  std::string text = "|";
+  for (const std::string& cell : cells) {
+    text += " " + cell + " |";
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string digits3(double value) {
+  if (!std::isfinite(value)) {
+    return "-";
+  }
+  if (value == 0) {
+    return "0";
+  }
+  const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(std::clamp(3 - before_point, 0, 6)) << value;
+  return before_point > 4 ? whole(value) : text.str();
+}
+
+std::string whole(double value) {
+  if (!std::isfinite(value)) {
+    return "-";
+  }
+  std::string digits = std::to_string(std::llround(value));
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > (digits.front() == '-' ? 1 : 0); at -= 3) {
+    if (digits.size() > 4) {
+      digits.insert(static_cast<std::size_t>(at), " ");
+    }
+  }
+  return digits;
+}
+
+MarkdownTable::MarkdownTable(const std::vector<std::string>& head) : text_(line(head)) {
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    text_ += "|---";
+  }
+  text_ += "|\n";
+}
+
+void MarkdownTable::row(const std::vector<std::string>& cells) { text_ += line(cells); }
+
+}  // namespace depthgrid::bench

@@ -1,0 +1,25 @@
+// Numbers and tables for Markdown.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace depthgrid::bench {
+
+/// Three significant digits without exponent: "0.0123", "4.56", "12300"; "-" for NaN.
+[[nodiscard]] std::string digits3(double value);
+/// As a whole number with blanks between thousands; "-" for NaN.
+[[nodiscard]] std::string whole(double value);
+
+/// Lines of "| a | b |" under a head.
+class MarkdownTable {
+ public:
+  explicit MarkdownTable(const std::vector<std::string>& head);
+  void row(const std::vector<std::string>& cells);
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace depthgrid::bench
