@@ -15,18 +15,18 @@ namespace depthgrid::search::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // No fused multiply-add anywhere: every instruction set gives the same bits.
-using Floats = hn::CappedTag<float, 8>;
+using Floats = hn::CappedTag<float, kSplit>;
 using Ints = hn::RebindToSigned<Floats>;
 using V = hn::Vec<Floats>;
 using I = hn::Vec<Ints>;
 using M = hn::Mask<Floats>;
 
-alignas(64) constexpr float kSignX[8] = {-1, 1, -1, 1, -1, 1, -1, 1};
-alignas(64) constexpr float kSignY[8] = {-1, -1, 1, 1, -1, -1, 1, 1};
-alignas(64) constexpr float kSignZ[8] = {-1, -1, -1, -1, 1, 1, 1, 1};
+alignas(64) constexpr float kSignX[kSplit] = {-1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1};
+alignas(64) constexpr float kSignY[kSplit] = {-1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1, 1};
+alignas(64) constexpr float kSignZ[kSplit] = {-1, -1, -1, -1, 1, 1, 1, 1, -1, -1, -1, -1, 1, 1, 1, 1};
 
-/// Half the side of a cube over half its diagonal, rounded down.
-constexpr float kHalfOfDiagonal = 0.5773F;
+/// Cubes of at most so many resolutions half a side are asked whether they touch: larger ones hardly ever end a search.
+constexpr float kHintSides = 2.5F;
 
 /// Boxes, one a lane: centre and half sides along the world's axes.
 struct Boxes {
@@ -35,7 +35,7 @@ struct Boxes {
   V half_diagonal;
 };
 
-/// Bounds of the boxes in a camera's frame, grown by the camera's reach.
+/// Bounds of the boxes in a camera's frame, a little more than rounding takes; grown by the camera's reach if asked for.
 struct Bounds {
   V x_low, x_high, y_low, y_high, z_low, z_high;
 };
@@ -46,13 +46,13 @@ HWY_INLINE V weighted(const float* HWY_RESTRICT row, V x, V y, V z) {
                  hn::Mul(hn::Set(d, row[2]), z));
 }
 
-HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes) {
+HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes, bool with_reach = true) {
   const Floats d;
   const V x = hn::Add(weighted(camera.rotation, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[0]));
   const V y = hn::Add(weighted(camera.rotation + 3, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[1]));
   const V z = hn::Add(weighted(camera.rotation + 6, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[2]));
   V grown = hn::Set(d, camera.guard_m);
-  if (camera.has_reach) {
+  if (camera.has_reach && with_reach) {
     const V range = hn::Add(hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))),
                             boxes.half_diagonal);
     const V reach = hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range));
@@ -99,7 +99,11 @@ HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1
       static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0)))));
   // Two by two pixels are looked up one by one; 6 2^l + 1 pixels lie in at most eight texel columns of level l wherever
   // they begin.
-  const std::size_t level = last <= 1 ? 0 : 1 + static_cast<std::size_t>(std::bit_width((last - 1) / 6));
+  // The coarsest level has the whole image in eight columns.
+  const std::size_t level =
+      last <= 1 ? 0
+                : std::min(1 + static_cast<std::size_t>(std::bit_width((last - 1) / 6)),
+                           static_cast<std::size_t>(camera.level_count));
   const Texels& texels = camera.texels[level];
   const I width = hn::Set(di, texels.width);
   const I back = hn::Set(di, texels.back);
@@ -122,8 +126,7 @@ HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const floa
               pick(hn::GatherIndex(d, values, at.corner_10), hn::GatherIndex(d, values, at.corner_11)));
 }
 
-/// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high. `candidates`: those that a robot's
-/// island may yet hold.
+/// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high.
 HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high, Footprint& at) {
   const Floats d;
   const Ints di;
@@ -136,29 +139,38 @@ HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, 
   return hn::And(inside, hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m)));
 }
 
-/// Lanes that lie in the robot's island in each of their pixels.
-HWY_INLINE M in_island(const LocalCamera& camera, M inside, const Footprint& at, V z_low, V z_high) {
+/// Lanes in whose every pixel the box is free or lies in the robot's island. Pixels of both kinds lie side by side where
+/// one link is seen before another.
+HWY_INLINE M free_or_island(const LocalCamera& camera, M inside, const Footprint& at, V z_low, V z_high) {
   const Floats d;
   const View& view = *camera.view;
-  // Islands are rare: most boxes have none even in their first pixel (or around it).
-  const float* HWY_RESTRICT nears =
-      at.level == 0 ? view.island_near_m().data() : view.island_near_maxima_m() + camera.texels[at.level].offset;
-  M held = hn::And(inside, hn::Ge(z_low, hn::GatherIndex(d, nears, at.corner_00)));
-  if (hn::AllFalse(d, held)) {
-    return held;
+  const V blind = hn::Set(d, camera.blind_m);
+  if (at.level == 0) {
+    M result = inside;
+    for (const I& corner : {at.corner_00, at.corner_01, at.corner_10, at.corner_11}) {
+      const V near_m = hn::GatherIndex(d, view.island_near_m().data(), corner);
+      const V far_m = hn::GatherIndex(d, view.island_far_m().data(), corner);
+      const V free_m = hn::GatherIndex(d, camera.free_m, corner);
+      const M free = hn::And(hn::Gt(z_low, blind), hn::Lt(z_high, free_m));
+      result = hn::And(result, hn::Or(free, hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m))));
+    }
+    return result;
   }
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
   const V near_m = extremum(camera, at, view.island_near_m().data(), view.island_near_maxima_m(), max);
   const V far_m = extremum(camera, at, view.island_far_m().data(), view.island_far_minima_m(), min);
-  return hn::And(held, hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m)));
+  return hn::And(inside, hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m)));
 }
 
 /// Lanes of `inside` that the camera frees: seen free, or robot.
 HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high) {
   Footprint at;
   const M free = seen_free(camera, inside, r, z_low, z_high, at);
-  return camera.has_islands ? hn::Or(free, in_island(camera, hn::AndNot(free, inside), at, z_low, z_high)) : free;
+  if (!camera.has_islands || hn::AllTrue(Floats(), hn::Or(free, hn::Not(inside)))) {
+    return free;
+  }
+  return hn::Or(free, free_or_island(camera, inside, at, z_low, z_high));
 }
 
 /// Lanes that the camera frees wholly.
@@ -228,23 +240,23 @@ struct Proximities {
   V near_x, near_y, near_z;  ///< a point of the box: the nearest for a point, roughly the nearest for a segment
 };
 
-HWY_INLINE Proximities proximities(const CubeQuery& query, const Boxes& boxes) {
+HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
   const Floats d;
   const V zero = hn::Zero(d);
-  V px = hn::Set(d, query.axis_a[0]);
-  V py = hn::Set(d, query.axis_a[1]);
-  V pz = hn::Set(d, query.axis_a[2]);
+  V px = hn::Set(d, axis.a[0]);
+  V py = hn::Set(d, axis.a[1]);
+  V pz = hn::Set(d, axis.a[2]);
   V off_axis = zero;
-  const bool segment = query.inverse_square != 0;
+  const bool segment = axis.inverse_square != 0;
   if (segment) {
     const V ax = hn::Sub(boxes.x, px);
     const V ay = hn::Sub(boxes.y, py);
     const V az = hn::Sub(boxes.z, pz);
-    const V t0 = hn::Mul(weighted(query.axis_along, ax, ay, az), hn::Set(d, query.inverse_square));
+    const V t0 = hn::Mul(weighted(axis.along, ax, ay, az), hn::Set(d, axis.inverse_square));
     const V t = clamp(t0, zero, hn::Set(d, 1.0F));
-    px = hn::Add(px, hn::Mul(t, hn::Set(d, query.axis_along[0])));
-    py = hn::Add(py, hn::Mul(t, hn::Set(d, query.axis_along[1])));
-    pz = hn::Add(pz, hn::Mul(t, hn::Set(d, query.axis_along[2])));
+    px = hn::Add(px, hn::Mul(t, hn::Set(d, axis.along[0])));
+    py = hn::Add(py, hn::Mul(t, hn::Set(d, axis.along[1])));
+    pz = hn::Add(pz, hn::Mul(t, hn::Set(d, axis.along[2])));
     off_axis = length(hn::Sub(boxes.x, px), hn::Sub(boxes.y, py), hn::Sub(boxes.z, pz));
   }
   Proximities result;
@@ -261,42 +273,60 @@ HWY_INLINE Proximities proximities(const CubeQuery& query, const Boxes& boxes) {
 }
 
 /// Lanes around whose point a camera may have not-free space within slack and reach: the point lies out of its view, or
-/// one of the two by two pixels nearest to it begins to be not free in or before the far face of the box of that half
-/// diagonal around it.
+/// its pixel or one of the three nearest to it begins to be not free near enough. With t the tangent of the angle between
+/// ray and optical axis, c its cosine and s the lateral distance to the pixel, a depth h beyond the point is near enough
+/// on the worst side if (s + t h)^2 + h^2 <= slack^2, which is h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
 HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
   const Floats d;
   const Ints di;
   const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0F);
   const V x = hn::Add(weighted(camera.rotation, x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
   const V y = hn::Add(weighted(camera.rotation + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
   const V z = hn::Add(weighted(camera.rotation + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
-  V half = hn::Set(d, slack_m * kHalfOfDiagonal);
+  const V range = length(x, y, z);
+  V slack = hn::Set(d, slack_m);
   if (camera.has_reach) {
-    const V reach = hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), length(x, y, z)));
-    half = hn::Add(half, hn::Mul(reach, hn::Set(d, kHalfOfDiagonal)));
+    slack = hn::Add(slack, hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range)));
   }
-  const V z_far = hn::Add(z, half);
-  const V inverse = hn::Div(hn::Set(d, 1.0F), z_far);
+  const V inverse = hn::Div(one, z);
   const V u = hn::Add(hn::Mul(hn::Mul(x, inverse), hn::Set(d, camera.fx)), hn::Set(d, camera.cx));
   const V v = hn::Add(hn::Mul(hn::Mul(y, inverse), hn::Set(d, camera.fy)), hn::Set(d, camera.cy));
   const M in_view = hn::And(hn::And(hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, camera.width))),
                                     hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, camera.height)))),
                             hn::Gt(z, hn::Set(d, camera.blind_m)));
-  // The pixels that the far face reaches, at most half a pixel away.
-  const V side = hn::Min(hn::Mul(half, hn::Mul(inverse, hn::Set(d, std::min(camera.fx, camera.fy)))), hn::Set(d, 0.5F));
-  const auto pixel = [&](V coordinate, float size) HWY_ATTR {
-    return hn::ConvertTo(di, hn::IfThenElseZero(in_view, clamp(coordinate, zero, hn::Set(d, size - 1))));
+  const V inside_u = hn::IfThenElseZero(in_view, u);
+  const V inside_v = hn::IfThenElseZero(in_view, v);
+  const I column = hn::ConvertTo(di, inside_u);
+  const I row = hn::ConvertTo(di, inside_v);
+  const V part_u = hn::Sub(inside_u, hn::ConvertTo(d, column));
+  const V part_v = hn::Sub(inside_v, hn::ConvertTo(d, row));
+  // The neighbour on the nearer side; at the image's edge the pixel itself, which is no less true.
+  const V half = hn::Set(d, 0.5F);
+  const auto beside = [&](V coordinate, V part, float size) HWY_ATTR {
+    const V next = hn::Add(coordinate, hn::IfThenElse(hn::Lt(part, half), hn::Neg(one), one));
+    return hn::ConvertTo(di, clamp(next, zero, hn::Set(d, size - 1)));
   };
-  const I u0 = pixel(hn::Sub(u, side), camera.width);
-  const I u1 = pixel(hn::Add(u, side), camera.width);
+  const I column1 = beside(inside_u, part_u, camera.width);
+  const I row1 = beside(inside_v, part_v, camera.height);
+  const V side_u = hn::Mul(hn::Min(part_u, hn::Sub(one, part_u)), hn::Mul(z, hn::Set(d, 1.0F / camera.fx)));
+  const V side_v = hn::Mul(hn::Min(part_v, hn::Sub(one, part_v)), hn::Mul(z, hn::Set(d, 1.0F / camera.fy)));
+  const V cosine = hn::Div(z, range);
+  const V square = hn::Mul(cosine, cosine);
+  const V slant = hn::Sqrt(hn::Max(hn::Sub(one, square), zero));  // t c
+  const auto reaches = [&](V free_m, V side) HWY_ATTR {
+    const V rest = hn::Sub(hn::Mul(slack, slack), hn::Mul(hn::Mul(side, side), square));
+    const V depth = hn::Sub(hn::Mul(cosine, hn::Sqrt(hn::Max(rest, zero))), hn::Mul(hn::Mul(side, slant), cosine));
+    return hn::And(hn::Ge(rest, zero), hn::Le(free_m, hn::Add(z, hn::Max(depth, zero))));
+  };
   const I width = hn::Set(di, camera.width_px);
-  const I row0 = hn::Mul(pixel(hn::Sub(v, side), camera.height), width);
-  const I row1 = hn::Mul(pixel(hn::Add(v, side), camera.height), width);
+  const I line0 = hn::Mul(row, width);
+  const I line1 = hn::Mul(row1, width);
   const float* HWY_RESTRICT values = camera.free_m;
-  const V free_m =
-      hn::Min(hn::Min(hn::GatherIndex(d, values, hn::Add(row0, u0)), hn::GatherIndex(d, values, hn::Add(row0, u1))),
-              hn::Min(hn::GatherIndex(d, values, hn::Add(row1, u0)), hn::GatherIndex(d, values, hn::Add(row1, u1))));
-  return hn::Or(hn::Not(in_view), hn::Le(free_m, z_far));
+  const M own = reaches(hn::GatherIndex(d, values, hn::Add(line0, column)), zero);
+  const M by_column = reaches(hn::GatherIndex(d, values, hn::Add(line0, column1)), side_u);
+  const M by_row = reaches(hn::GatherIndex(d, values, hn::Add(line1, column)), side_v);
+  return hn::Or(hn::Not(in_view), hn::Or(own, hn::Or(by_column, by_row)));
 }
 
 /// Lanes of `open` that stay open after every camera has been asked.
@@ -327,14 +357,17 @@ HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
     const LocalCamera& camera = query.cameras[k];
     const Bounds bounds = bounds_in(camera, boxes);
     M gone = freed_whole(camera, bounds);
+    // W and what a camera covers have nothing to do with its reach.
+    const bool plain = query.principal == static_cast<int>(k) || query.uncovered_ignored;
+    const Bounds own = plain && camera.has_reach ? bounds_in(camera, boxes, false) : bounds;
     if (query.principal == static_cast<int>(k)) {
-      gone = hn::Or(gone, outside_view(query, camera, bounds));
+      gone = hn::Or(gone, outside_view(query, camera, own));
     }
     if (camera.space.to_view) {
       gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds));
     }
     if (query.uncovered_ignored) {
-      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, bounds));
+      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, own));
     }
     open = hn::AndNot(gone, open);
     if (hn::AllFalse(d, open)) {
@@ -347,62 +380,128 @@ HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
   return hn::AndNot(uncovered, open);
 }
 
-void split_lanes(CubeQuery& query, const Cube& parent, float half_m, float bound_m, Children& children) {
+HWY_INLINE std::uint32_t bits_of(M mask) {
+  const Floats d;
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
+}
+
+/// What stays within W.
+HWY_INLINE M cut_to_space(const CubeQuery& query, Boxes& boxes) {
+  const Floats d;
+  const V zero = hn::Zero(d);
+  M inside = hn::Eq(zero, zero);
+  const auto cut = [&](V& centre, V& half_side, float low, float high) HWY_ATTR {
+    const V from = hn::Max(hn::Sub(centre, half_side), hn::Set(d, low));
+    const V to = hn::Min(hn::Add(centre, half_side), hn::Set(d, high));
+    inside = hn::And(inside, hn::Le(from, to));
+    centre = hn::Mul(hn::Add(from, to), hn::Set(d, 0.5F));
+    // A little larger: the centre has been rounded.
+    half_side = hn::Add(hn::Mul(hn::Sub(to, from), hn::Set(d, 0.5F)), hn::Set(d, 1e-6F));
+  };
+  cut(boxes.x, boxes.half_x, query.box_low[0], query.box_high[0]);
+  cut(boxes.y, boxes.half_y, query.box_low[1], query.box_high[1]);
+  cut(boxes.z, boxes.half_z, query.box_low[2], query.box_high[2]);
+  return inside;
+}
+
+/// Lanes of `open` whose point nearest to the axis seems to lie at or near not-free space in every camera.
+HWY_INLINE std::uint32_t touching(const CubeQuery& query, const Axis& axis, const Boxes& boxes, std::uint32_t lanes) {
+  const Proximities near = proximities(axis, boxes);
+  for (std::size_t n = 0; n < query.camera_count && lanes != 0; ++n) {
+    const LocalCamera& camera = query.cameras[query.order[n]];
+    lanes &= bits_of(touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
+  }
+  return lanes;
+}
+
+void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float half_m, Children& children) {
   const Floats d;
   const V zero = hn::Zero(d);
   const V half = hn::Set(d, half_m);
   children.count = 0;
-  children.touching = 0;
-  for (std::size_t first = 0; first < 8; first += hn::Lanes(d)) {
-    const V x = hn::Add(hn::Set(d, parent.x), hn::Mul(hn::Load(d, kSignX + first), half));
-    const V y = hn::Add(hn::Set(d, parent.y), hn::Mul(hn::Load(d, kSignY + first), half));
-    const V z = hn::Add(hn::Set(d, parent.z), hn::Mul(hn::Load(d, kSignZ + first), half));
-    Boxes boxes{x, y, z, half, half, half, hn::Set(d, half_m * 1.7320509F)};
-    M open = hn::Eq(zero, zero);
-    if (query.boxed) {
-      const auto cut = [&](V& centre, V& half_side, float low, float high) HWY_ATTR {
-        const V from = hn::Max(hn::Sub(centre, half_side), hn::Set(d, low));
-        const V to = hn::Min(hn::Add(centre, half_side), hn::Set(d, high));
-        open = hn::And(open, hn::Le(from, to));
-        centre = hn::Mul(hn::Add(from, to), hn::Set(d, 0.5F));
-        // A little larger: the centre has been rounded.
-        half_side = hn::Add(hn::Mul(hn::Sub(to, from), hn::Set(d, 0.5F)), hn::Set(d, 1e-6F));
-      };
-      cut(boxes.x, boxes.half_x, query.box_low[0], query.box_high[0]);
-      cut(boxes.y, boxes.half_y, query.box_low[1], query.box_high[1]);
-      cut(boxes.z, boxes.half_z, query.box_low[2], query.box_high[2]);
+  const Cube& second = parents[parent_count - 1];
+  const std::uint32_t wanted = parents[0].primitives | second.primitives;
+  const std::uint32_t second_lanes = parent_count == 2 ? 0xFF00U : 0U;
+  const bool hints = half_m <= kHintSides * query.slack_m;
+  alignas(64) float parent_x[kSplit];
+  alignas(64) float parent_y[kSplit];
+  alignas(64) float parent_z[kSplit];
+  for (int i = 0; i < 8; ++i) {
+    parent_x[i] = parents[0].x;
+    parent_y[i] = parents[0].y;
+    parent_z[i] = parents[0].z;
+    parent_x[i + 8] = second.x;
+    parent_y[i + 8] = second.y;
+    parent_z[i + 8] = second.z;
+  }
+  alignas(64) float distances[kGroup][kSplit];
+  alignas(64) float xs[kSplit];
+  alignas(64) float ys[kSplit];
+  alignas(64) float zs[kSplit];
+  std::uint32_t nearer[kGroup];
+  const std::size_t end = parent_count == 2 ? 16 : 8;
+  for (std::size_t first = 0; first < end; first += hn::Lanes(d)) {
+    Boxes boxes{hn::Add(hn::Load(d, parent_x + first), hn::Mul(hn::Load(d, kSignX + first), half)),
+                hn::Add(hn::Load(d, parent_y + first), hn::Mul(hn::Load(d, kSignY + first), half)),
+                hn::Add(hn::Load(d, parent_z + first), hn::Mul(hn::Load(d, kSignZ + first), half)),
+                half,
+                half,
+                half,
+                hn::Set(d, half_m * 1.7320509F)};
+    hn::Store(boxes.x, d, xs + first);
+    hn::Store(boxes.y, d, ys + first);
+    hn::Store(boxes.z, d, zs + first);
+    const M inside = query.boxed ? cut_to_space(query, boxes) : hn::Eq(zero, zero);
+    M open = hn::Lt(zero, zero);
+    for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
+      const int i = std::countr_zero(rest);
+      const Axis& axis = query.axes[static_cast<std::size_t>(i)];
+      const V distance = proximities(axis, boxes).distance;
+      const M here = hn::And(inside, hn::Lt(distance, hn::Set(d, axis.bound_m)));
+      hn::Store(distance, d, distances[i] + first);
+      nearer[i] = bits_of(here);
+      open = hn::Or(open, here);
     }
-    const Proximities near = proximities(query, boxes);
-    open = hn::And(open, hn::Lt(near.distance, hn::Set(d, bound_m)));
     if (hn::AllFalse(d, open)) {
       continue;
     }
     open = not_freed(query, boxes, open);
-    if (hn::AllFalse(d, open)) {
+    // Lanes of the parents that there are, and of each primitive those whose parent asks for it.
+    const std::uint32_t open_bits = bits_of(open) & ((0xFFU | second_lanes) >> first);
+    if (open_bits == 0) {
       continue;
     }
-    M touching = open;
-    for (std::size_t n = 0; n < query.camera_count && ((n & 1U) != 0 || !hn::AllFalse(d, touching)); ++n) {
-      const LocalCamera& camera = query.cameras[query.order[n]];
-      touching = hn::And(touching, touches(camera, near.near_x, near.near_y, near.near_z, query.slack_m));
+    int child_of[kSplit];
+    for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
+      const int lane = std::countr_zero(rest);
+      child_of[lane] = children.count;
+      children.touching[static_cast<std::size_t>(children.count)] = 0;
+      const std::size_t at = first + static_cast<std::size_t>(lane);
+      children.cubes[static_cast<std::size_t>(children.count++)] = {xs[at], ys[at],               zs[at],
+                                                                    1e30F,  parents[0].level + 1, 0};
     }
-    std::uint8_t open_bits[8] = {};
-    std::uint8_t touching_bits[8] = {};
-    hn::StoreMaskBits(d, open, open_bits);
-    hn::StoreMaskBits(d, touching, touching_bits);
-    alignas(64) float xs[8];
-    alignas(64) float ys[8];
-    alignas(64) float zs[8];
-    alignas(64) float distances[8];
-    hn::Store(x, d, xs);
-    hn::Store(y, d, ys);
-    hn::Store(z, d, zs);
-    hn::Store(near.distance, d, distances);
-    for (unsigned rest = open_bits[0]; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      children.touching |= ((touching_bits[0] >> i) & 1U) << children.count;
-      children.cubes[static_cast<std::size_t>(children.count++)] = {xs[i], ys[i], zs[i], distances[i],
-                                                                    parent.level + 1};
+      const std::uint32_t asked = ((parents[0].primitives >> i) & 1U) * 0xFFU | ((second.primitives >> i) & 1U) * second_lanes;
+      const std::uint32_t mine = nearer[i] & open_bits & (asked >> first);
+      if (mine == 0) {
+        continue;
+      }
+      for (std::uint32_t lanes = mine; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        Cube& child = children.cubes[static_cast<std::size_t>(child_of[lane])];
+        child.primitives |= 1U << i;
+        child.distance_m = std::min(child.distance_m, distances[i][first + static_cast<std::size_t>(lane)]);
+      }
+      if (!hints) {
+        continue;
+      }
+      for (std::uint32_t lanes = touching(query, query.axes[static_cast<std::size_t>(i)], boxes, mine); lanes != 0;
+           lanes &= lanes - 1) {
+        children.touching[static_cast<std::size_t>(child_of[std::countr_zero(lanes)])] |= 1U << i;
+      }
     }
   }
 }
@@ -415,8 +514,8 @@ namespace depthgrid::search {
 
 HWY_EXPORT(split_lanes);
 
-void split(CubeQuery& query, const Cube& parent, float half_m, float bound_m, Children& children) noexcept {
-  HWY_DYNAMIC_DISPATCH(split_lanes)(query, parent, half_m, bound_m, children);
+void split(CubeQuery& query, const Cube* parents, int parent_count, float half_m, Children& children) noexcept {
+  HWY_DYNAMIC_DISPATCH(split_lanes)(query, parents, parent_count, half_m, children);
 }
 
 }  // namespace depthgrid::search

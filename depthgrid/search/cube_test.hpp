@@ -9,17 +9,29 @@
 
 namespace depthgrid::search {
 
+/// Children of two cubes: what is tested at once.
+inline constexpr std::size_t kSplit = 16;
+
+/// Most primitives that are searched at once.
+inline constexpr std::size_t kGroup = 32;
+
+/// A primitive's axis from a to a + along, and how far from it an obstacle is of interest.
+struct Axis {
+  float a[3];
+  float along[3];
+  float inverse_square = 0;  ///< 1 / |along|^2; 0 for a point
+  float bound_m = 0;         ///< cubes that are not nearer are dropped
+};
+
 /// What a query asks of cubes; everything relative to the query's origin, metres.
 struct CubeQuery {
   std::array<LocalCamera, kMostCameras> cameras;
   std::size_t camera_count = 0;
   std::array<std::uint8_t, kMostCameras> order{};  ///< in which cameras are asked; the last that freed cubes is first
 
-  float axis_a[3];           ///< the primitive's axis from a to a + along
-  float axis_along[3];
-  float inverse_square = 0;  ///< 1 / |along|^2; 0 for a point
+  std::array<Axis, kGroup> axes;
 
-  bool boxed = false;  ///< W is a box that the primitive's surroundings leave
+  bool boxed = false;  ///< W is a box that the primitives' surroundings leave
   float box_low[3];    ///< rounded outwards
   float box_high[3];
   int principal = -1;  ///< W is this camera's view between these depths
@@ -29,17 +41,18 @@ struct CubeQuery {
   float slack_m = 0;               ///< how near to a camera's not-free set the nearest point of an answer has to lie
 };
 
-/// Children of a cube that may hold an obstacle nearer than the bound.
+/// Children of a cube that may hold an obstacle nearer than the bound of one of their primitives.
 struct Children {
-  std::array<Cube, 8> cubes;
+  std::array<Cube, kSplit> cubes;
   int count = 0;
-  /// Bit i: every camera seems to have not-free space within slack and reach of the point of cube i that is nearest to
-  /// the axis. A hint: in single precision, roughly for segments, and the robot's islands are not looked at.
-  std::uint32_t touching = 0;
+  /// Of each child, bit i: every camera seems to have not-free space within slack and reach of the child's point that is
+  /// nearest to axis i. A hint: in single precision, roughly for segments, and the robot's islands are not looked at.
+  std::array<std::uint32_t, kSplit> touching{};
 };
 
-/// Splits `parent`, whose children have this half side, and keeps the children that lie nearer than bound_m to the axis
-/// and are neither outside W nor freed by the cameras. Never drops a child that holds a point of the obstacle set.
-void split(CubeQuery& query, const Cube& parent, float half_m, float bound_m, Children& children) noexcept;
+/// Splits one or two parents of the same level, whose children have this half side, and keeps the children that lie
+/// nearer to the axis of one of their parent's primitives than its bound and are neither outside W nor freed by the
+/// cameras. A kept child may have no primitives left. Never drops a child that holds a point of the obstacle set.
+void split(CubeQuery& query, const Cube* parents, int parent_count, float half_m, Children& children) noexcept;
 
 }  // namespace depthgrid::search

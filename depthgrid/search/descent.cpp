@@ -1,9 +1,9 @@
 #include "depthgrid/search/descent.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
-#include "depthgrid/search/axis_distance.hpp"
 #include "depthgrid/search/ball_test.hpp"
 
 namespace depthgrid::search {
@@ -27,36 +27,40 @@ bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camer
   return pixel.x_px >= 0 && pixel.y_px >= 0 && pixel.x_px < camera.width_px && pixel.y_px < camera.height_px;
 }
 
-/// x lies in the camera's not-free set, or one of the two by two pixels nearest to x has some of it within slack and
-/// reach of x.
+/// x lies in the camera's not-free set, or its pixel or one of the two beside it has some of that set within slack and
+/// reach of x. The double-precision form of what the cube test hints at.
 bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
   const Eigen::Vector3d x = camera.to_camera(x_local);
   if (!(x.z() > camera.near_m) || !projects_inside(camera.pinhole, x)) {
     return true;
   }
-  // A point of the far face of a cube around x, whose half diagonal is slack and reach, is near enough.
-  const double half_m = (slack_m + (camera.has_reach ? camera.reach(x) : 0.0)) / kSqrt3;
-  const double z_m = x.z() + half_m;
   const PinholeCamera& c = camera.pinhole;
-  const double side_px = std::min(0.5, half_m * std::min(c.fx_px, c.fy_px) / z_m);
-  const double u_px = c.fx_px * x.x() / z_m + c.cx_px;
-  const double v_px = c.fy_px * x.y() / z_m + c.cy_px;
-  const auto column = [&](double px) { return static_cast<int>(std::clamp(px, 0.0, c.width_px - 1.0)); };
-  const auto row = [&](double px) { return static_cast<int>(std::clamp(px, 0.0, c.height_px - 1.0)); };
-  const View& view = *camera.view;
-  for (const int v : {row(v_px - side_px), row(v_px + side_px)}) {
-    for (const int u : {column(u_px - side_px), column(u_px + side_px)}) {
-      if (z_m < static_cast<double>(view.free_m().at(u, v))) {
-        continue;
-      }
-      // In the robot's island it is the robot.
-      if (!camera.has_islands || !(z_m >= static_cast<double>(view.island_near_m().at(u, v)) &&
-                                   z_m <= static_cast<double>(view.island_far_m().at(u, v)))) {
-        return true;
-      }
+  const DepthPoint at = project(c, x);
+  const auto u = static_cast<int>(at.x_px);
+  const auto v = static_cast<int>(at.y_px);
+  const double part_u = at.x_px - u;
+  const double part_v = at.y_px - v;
+  const double slack = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
+  const double cosine = x.z() / x.norm();
+  const double slant = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  // A depth h beyond x at lateral distance s is within the slack if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
+  const auto reaches = [&](int i, int j, double side_m) {
+    const double rest = slack * slack - side_m * side_m * cosine * cosine;
+    if (rest < 0 || !c.contains(i, j)) {
+      return false;
     }
-  }
-  return false;
+    const double z_m = x.z() + std::max(0.0, cosine * std::sqrt(rest) - side_m * slant * cosine);
+    const auto free_m = static_cast<double>(camera.view->free_m().at(i, j));
+    if (z_m < free_m) {
+      return false;
+    }
+    // What is not free begins at free_m, or where x lies beyond that; in the robot's island it is the robot.
+    const double y_m = std::max(free_m, x.z());
+    return !camera.has_islands || !(y_m >= static_cast<double>(camera.view->island_near_m().at(i, j)) &&
+                                    y_m <= static_cast<double>(camera.view->island_far_m().at(i, j)));
+  };
+  return reaches(u, v, 0) || reaches(part_u < 0.5 ? u - 1 : u + 1, v, std::min(part_u, 1 - part_u) * x.z() / c.fx_px) ||
+         reaches(u, part_v < 0.5 ? v - 1 : v + 1, std::min(part_v, 1 - part_v) * x.z() / c.fy_px);
 }
 
 }  // namespace
@@ -64,6 +68,9 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
 Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
     : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
   query_.camera_count = snapshot.camera_count();
+  for (std::size_t k = 0; k < kMostCameras; ++k) {
+    query_.order[k] = static_cast<std::uint8_t>(k);
+  }
   query_.uncovered_ignored = settings_.policies.unobserved == Policy::ignored;
   query_.slack_m = rounded_down(settings_.resolution_m - 1e-5);
   least_reach_m_ = 1e30;
@@ -80,6 +87,10 @@ Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier,
   const double leaf_diagonal_m =
       has_reach_ ? (settings_.resolution_m - 2e-5) / (1 + largest_rate_) : (settings_.resolution_m - 5e-5) / kSqrt3;
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
+  is_exact_ = has_reach_;
+  for (std::size_t k = 0; k < query_.camera_count; ++k) {
+    is_exact_ = is_exact_ || snapshot.view(k).has_islands();
+  }
 }
 
 void Descent::set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept {
@@ -90,33 +101,22 @@ void Descent::set_origin(const Eigen::Vector3d& origin_world, double extent_m) n
   }
 }
 
-void Descent::aim(const Primitive& primitive, double reach_m) noexcept {
-  radius_m_ = primitive.radius_m;
-  const Eigen::Vector3d middle_world = 0.5 * (primitive.a_world + primitive.b_world);
-  const double around_m = 0.5 * (primitive.b_world - primitive.a_world).cwiseAbs().maxCoeff() + reach_m;
-  if (!((middle_world - origin_world_).cwiseAbs().maxCoeff() + 8 * around_m <= extent_m_)) {
-    set_origin(middle_world, kSharedExtent + 8 * around_m);
+void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept {
+  // The root reaches at most four times the extent to one side.
+  if (!((middle_world - origin_world_).cwiseAbs().maxCoeff() + 4 * extent_m <= extent_m_)) {
+    set_origin(middle_world, kSharedExtent + 4 * extent_m);
   }
-  a_local_ = primitive.a_world - origin_world_;
-  b_local_ = primitive.b_world - origin_world_;
-  const Eigen::Vector3d along = b_local_ - a_local_;
-  const double square = along.squaredNorm();
-  for (int i = 0; i < 3; ++i) {
-    query_.axis_a[i] = static_cast<float>(a_local_(i));
-    query_.axis_along[i] = static_cast<float>(along(i));
-  }
-  query_.inverse_square = square > 1e-12 ? static_cast<float>(1 / square) : 0.0F;
-
-  // The root's side is the leaf's times a power of two. The axis' middle lies at a third of it along each axis, and so at
-  // a third or two thirds of every cube that holds it: never near the faces, where eight cubes of each level would meet.
+  axis_count_ = 0;
+  // The root's side is the leaf's times a power of two. The middle lies at a third of it along each axis, and so at a
+  // third or two thirds of every cube that holds it: never near the faces, where eight cubes of each level would meet.
   double root_half_m = leaf_half_m_;
   leaf_level_ = 0;
-  while (2 * root_half_m < 3 * around_m && leaf_level_ + 12 < static_cast<int>(kLevels)) {
+  while (2 * root_half_m < 3 * extent_m && leaf_level_ + 12 < static_cast<int>(kLevels)) {
     root_half_m *= 2;
     ++leaf_level_;
   }
   const Eigen::Vector3d root = middle_world - origin_world_ + Eigen::Vector3d::Constant(root_half_m / 3);
-  root_ = {static_cast<float>(root.x()), static_cast<float>(root.y()), static_cast<float>(root.z()), 0.0F, 0};
+  root_ = {static_cast<float>(root.x()), static_cast<float>(root.y()), static_cast<float>(root.z()), 0.0F, 0, 0};
   double half_m = root_half_m;
   for (float& half : half_m_) {
     half = static_cast<float>(half_m);
@@ -138,7 +138,7 @@ void Descent::aim(const Primitive& primitive, double reach_m) noexcept {
     space_low_ = box->low_world - origin_world_;
     space_high_ = box->high_world - origin_world_;
     const Eigen::Vector3d middle = middle_world - origin_world_;
-    query_.boxed = ((space_low_ - middle).array() > -around_m).any() || ((space_high_ - middle).array() < around_m).any();
+    query_.boxed = ((space_low_ - middle).array() > -extent_m).any() || ((space_high_ - middle).array() < extent_m).any();
     for (int i = 0; i < 3; ++i) {
       query_.box_low[i] = rounded_down(space_low_(i));
       query_.box_high[i] = rounded_up(space_high_(i));
@@ -207,7 +207,7 @@ bool Descent::is_free(const Cube& cube) noexcept {
   return uncovered;
 }
 
-bool Descent::is_leaf(const Cube& cube) noexcept {
+bool Descent::is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept {
   if (cube.level < leaf_level_) {
     return false;
   }
@@ -215,118 +215,193 @@ bool Descent::is_leaf(const Cube& cube) noexcept {
     return true;
   }
   const Box box = box_of(cube);
-  return in_space(nearest(a_local_, b_local_, box.low, box.high).in_box);
+  return in_space(nearest(axis.a, axis.b, box.low, box.high).in_box);
 }
 
-/// The nearest point of the cube becomes the answer if it is nearer than what was found before.
-void Descent::offer(const Cube& cube, Nearest& best) noexcept {
-  const Box box = box_of(cube);
-  const AxisToBox pair = nearest(a_local_, b_local_, box.low, box.high);
+std::size_t Descent::add(const Primitive& primitive, double limit_m) noexcept {
+  const std::size_t i = axis_count_++;
+  axes_[i] = {primitive.a_world - origin_world_, primitive.b_world - origin_world_, primitive.radius_m};
+  found_[i] = Nearest{};
+  found_[i].limit_m = limit_m;
+  found_[i].distance_m = limit_m;
+  const Eigen::Vector3d along = axes_[i].b - axes_[i].a;
+  const double square = along.squaredNorm();
+  Axis& axis = query_.axes[i];
+  for (int k = 0; k < 3; ++k) {
+    axis.a[k] = static_cast<float>(axes_[i].a(k));
+    axis.along[k] = static_cast<float>(along(k));
+  }
+  axis.inverse_square = square > 1e-12 ? static_cast<float>(1 / square) : 0.0F;
+  set_bound(i, limit_m);
+  return i;
+}
+
+/// Cubes have to be nearer than this, a little more because of single precision.
+void Descent::set_bound(std::size_t i, double bound_m) noexcept {
+  query_.axes[i].bound_m = bound_m > 0 ? rounded_up(bound_m + 1e-6) : 0.0F;
+}
+
+bool Descent::is_of_interest(const Cube& cube) const noexcept {
+  for (std::uint32_t rest = cube.primitives; rest != 0; rest &= rest - 1) {
+    if (cube.distance_m < query_.axes[static_cast<std::size_t>(std::countr_zero(rest))].bound_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::uint32_t Descent::all_primitives() const noexcept {
+  return axis_count_ >= kGroup ? ~0U : (1U << axis_count_) - 1U;
+}
+
+/// A place becomes the answer of a primitive if it is nearer than what was found before.
+void Descent::offer(const AxisToBox& pair, std::size_t i) noexcept {
+  Nearest& best = found_[i];
   if (pair.distance_m < best.distance_m) {
-    best = {pair.distance_m, true, false, pair.on_axis, pair.in_box};
+    best = {best.limit_m, pair.distance_m, true, false, pair.on_axis, pair.in_box};
+    set_bound(i, pair.distance_m <= axes_[i].radius_m ? 0.0 : pair.distance_m);
+  }
+}
+
+/// What is not looked at bounds the answers.
+void Descent::stop(std::uint32_t primitives, double at_m) noexcept {
+  for (std::uint32_t rest = primitives; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    Nearest& best = found_[i];
+    if (at_m < best.distance_m && query_.axes[i].bound_m > 0) {
+      best.stopped = true;
+      best.distance_m = at_m;
+    }
   }
 }
 
 /// Opens what split() has left over, or makes it the answer.
-void Descent::take(const Children& children, Nearest& best) noexcept {
-  for (int i = 0; i < children.count; ++i) {
-    const Cube& child = children.cubes[static_cast<std::size_t>(i)];
-    if (static_cast<double>(child.distance_m) >= best.distance_m) {
+void Descent::take(Children& children) noexcept {
+  for (int n = 0; n < children.count; ++n) {
+    Cube& child = children.cubes[static_cast<std::size_t>(n)];
+    if (!is_of_interest(child)) {
       continue;
     }
-    if (((children.touching >> i) & 1U) != 0) {
+    for (std::uint32_t rest = children.touching[static_cast<std::size_t>(n)]; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const Box box = box_of(child);
-      const AxisToBox pair = nearest(a_local_, b_local_, box.low, box.high);
+      const AxisToBox pair = nearest(axes_[i].a, axes_[i].b, box.low, box.high);
       if (is_blocked(pair.in_box, settings_.resolution_m - 1e-5)) {
-        offer(child, best);
-        continue;
+        offer(pair, i);
+        child.primitives &= ~(1U << i);
       }
     }
-    if (has_reach_ && child.level >= exact_level_ && is_free(child)) {
+    if (child.primitives == 0 || (is_exact_ && child.level >= exact_level_ && is_free(child))) {
       continue;
     }
-    if (is_leaf(child)) {
-      offer(child, best);
-    } else if (!frontier_.push(child)) {
-      // No room: what is not looked at bounds the answer.
-      best.stopped = true;
-      best.distance_m = std::min(best.distance_m, static_cast<double>(child.distance_m));
+    if (child.level >= leaf_level_) {
+      for (std::uint32_t rest = child.primitives; rest != 0; rest &= rest - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+        if (is_leaf(child, axes_[i])) {
+          const Box box = box_of(child);
+          offer(nearest(axes_[i].a, axes_[i].b, box.low, box.high), i);
+          child.primitives &= ~(1U << i);
+        }
+      }
+    }
+    if (child.primitives != 0 && !frontier_.push(child)) {
+      stop(child.primitives, std::max(0.0, static_cast<double>(child.distance_m) - 1e-6));
     }
   }
 }
 
-Nearest Descent::find(double limit_m, Allowance& allowance) noexcept {
-  Nearest best;
-  best.distance_m = limit_m;
-  frontier_.reset(static_cast<float>(limit_m));
-  const Eigen::Vector3d middle = 0.5 * (a_local_ + b_local_);
-  if (is_blocked(middle, settings_.resolution_m - 1e-5)) {
-    return {0.0, true, false, middle, middle};
+void Descent::find(Allowance& allowance) noexcept {
+  double largest_m = 0;
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    largest_m = std::max(largest_m, found_[i].limit_m);
+    const Eigen::Vector3d middle = 0.5 * (axes_[i].a + axes_[i].b);
+    if (is_blocked(middle, settings_.resolution_m - 1e-5)) {
+      offer({middle, middle, 0.0}, i);
+    }
   }
+  frontier_.reset(static_cast<float>(largest_m));
+  root_.primitives = all_primitives();
   static_cast<void>(frontier_.push(root_));
-  Cube cube{};
+  std::array<Cube, 2> pair{};
+  Cube& cube = pair[0];
   Children children;
   int until_clock = kClockInterval;
   while (frontier_.pop(cube)) {
-    if (static_cast<double>(cube.distance_m) >= best.distance_m) {
+    if (!is_of_interest(cube)) {
       continue;
     }
-    if (best.distance_m <= radius_m_ && best.found) {
-      break;  // it touches the primitive
-    }
     bool late = allowance.nodes <= 0;
-    if (allowance.timed && --until_clock == 0) {
+    if (allowance.timed && --until_clock <= 0) {
       until_clock = kClockInterval;
       late = late || std::chrono::steady_clock::now() >= allowance.deadline;
     }
     if (late) {
-      best.stopped = true;
-      best.distance_m = std::min(best.distance_m, static_cast<double>(frontier_.lower_bound_m()));
-      break;
+      stop(all_primitives(), std::max(0.0, static_cast<double>(frontier_.lower_bound_m()) - 1e-6));
+      return;
     }
-    --allowance.nodes;
-    ++count_.nodes;
-    split(query_, cube, half_side_m(cube.level + 1), rounded_up(best.distance_m), children);
-    take(children, best);
+    const int count = allowance.nodes > 1 && frontier_.pop_like(cube.level, pair[1]) ? 2 : 1;
+    allowance.nodes -= count;
+    count_.nodes += count;
+    split(query_, pair.data(), count, half_side_m(cube.level + 1), children);
+    take(children);
   }
-  return best;
 }
 
-Eigen::Vector3d Descent::mean_direction(Allowance& allowance) noexcept {
-  const double limit_m = settings_.rho_m + radius_m_;
+void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means,
+                                   Allowance& allowance) noexcept {
   const double least_half_m = settings_.rho_m / 32;
-  frontier_.reset(static_cast<float>(limit_m));
-  static_cast<void>(frontier_.push(root_));
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double total = 0;
+  double largest_m = 0;
+  std::array<double, kGroup> total{};
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    means[i].setZero();
+    set_bound(i, settings_.rho_m + axes_[i].radius_m);
+    largest_m = std::max(largest_m, settings_.rho_m + axes_[i].radius_m);
+  }
+  frontier_.reset(static_cast<float>(largest_m));
+  root_.primitives = wanted;
+  if (wanted != 0) {
+    static_cast<void>(frontier_.push(root_));
+  }
   Cube cube{};
   Children children;
   while (frontier_.pop(cube) && allowance.nodes > 0) {
     --allowance.nodes;
     ++count_.nodes;
-    split(query_, cube, half_side_m(cube.level + 1), rounded_up(limit_m), children);
-    for (int i = 0; i < children.count; ++i) {
-      const Cube& child = children.cubes[static_cast<std::size_t>(i)];
+    split(query_, &cube, 1, half_side_m(cube.level + 1), children);
+    for (int n = 0; n < children.count; ++n) {
+      Cube child = children.cubes[static_cast<std::size_t>(n)];
       const double half_m = static_cast<double>(half_side_m(child.level));
       const Box box = box_of(child);
       const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
-      const AxisToBox pair = nearest(a_local_, b_local_, centre, centre);
-      if (half_m > std::max(least_half_m, kFineness * pair.distance_m)) {
+      std::uint32_t fine = 0;  // those for which the cube counts as one piece
+      for (std::uint32_t rest = child.primitives; rest != 0; rest &= rest - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+        const double distance_m = nearest(axes_[i].a, axes_[i].b, centre, centre).distance_m;
+        fine |= half_m <= std::max(least_half_m, kFineness * distance_m) ? 1U << i : 0U;
+      }
+      if (fine != 0 && is_blocked(centre, 0)) {
+        for (std::uint32_t rest = fine; rest != 0; rest &= rest - 1) {
+          const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+          const AxisToBox pair = nearest(axes_[i].a, axes_[i].b, centre, centre);
+          const double distance_m = pair.distance_m - axes_[i].radius_m;
+          if (distance_m < settings_.rho_m && pair.distance_m > 0) {
+            const double weight =
+                (box.high - box.low).prod() /
+                (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
+            means[i] += weight / pair.distance_m * (centre - pair.on_axis);
+            total[i] += weight;
+          }
+        }
+      }
+      child.primitives &= ~fine;
+      if (child.primitives != 0) {
         static_cast<void>(frontier_.push(child));  // without room the direction is only coarser
-        continue;
       }
-      const double distance_m = pair.distance_m - radius_m_;
-      if (distance_m >= settings_.rho_m || !(pair.distance_m > 0) || !is_blocked(centre, 0)) {
-        continue;
-      }
-      const double repulsion =
-          1 / (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
-      const double weight = repulsion * (box.high - box.low).prod();
-      sum += weight / pair.distance_m * (centre - pair.on_axis);
-      total += weight;
     }
   }
-  return total > 0 ? (sum / total).eval() : Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    means[i] /= total[i] > 0 ? total[i] : 1.0;
+  }
 }
 
 }  // namespace depthgrid::search

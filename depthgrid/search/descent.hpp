@@ -1,11 +1,13 @@
-// The search for the nearest obstacle of one primitive.
+// The search for the nearest obstacles of a group of primitives.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <chrono>
 #include <cstdint>
-#include <optional>
+#include <span>
 
+#include "depthgrid/search/axis_distance.hpp"
 #include "depthgrid/search/cube_test.hpp"
 #include "depthgrid/search/primitive.hpp"
 #include "depthgrid/search/search.hpp"
@@ -19,37 +21,46 @@ struct Allowance {
   bool timed = false;
 };
 
-/// Positions relative to the query's origin, metres.
+/// One primitive's search. Positions relative to the descent's origin, metres.
 struct Nearest {
-  double distance_m = 0;  ///< from the axis; a lower bound where `stopped`
-  bool found = false;     ///< else nothing within the limit was found
-  bool stopped = false;   ///< by the allowance, or because the frontier was full
+  double limit_m = 0;     ///< how far from the axis an obstacle is of interest
+  double distance_m = 0;  ///< from the axis; limit_m when nothing nearer was found; a lower bound where `stopped`
+  bool found = false;
+  bool stopped = false;  ///< by the allowance, or because the frontier was full
   Eigen::Vector3d on_axis = Eigen::Vector3d::Zero();
   Eigen::Vector3d in_obstacle = Eigen::Vector3d::Zero();
 };
 
-/// The search on one snapshot, for one primitive after the other.
+/// The search on one snapshot, for groups of primitives that are near to each other: their cubes are tested once.
 class Descent {
  public:
   Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept;
 
-  /// Makes everything relative to a place near the primitive. `reach_m`: how far from the axis is of interest.
-  void aim(const Primitive& primitive, double reach_m) noexcept;
+  /// Starts a group around a place; extent_m: how far from it the axes and what is of interest around them reach.
+  void aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept;
 
-  /// Nearest obstacle within limit_m (at most what aim() was told) of the axis; with a radius, any obstacle within it
-  /// ends the search.
-  [[nodiscard]] Nearest find(double limit_m, Allowance& allowance) noexcept;
+  /// Adds a primitive (at most kGroup) whose obstacles within limit_m of its axis are of interest. Returns its index.
+  std::size_t add(const Primitive& primitive, double limit_m) noexcept;
+
+  /// Finds the nearest obstacles of all primitives of the group. One within a primitive's radius ends its search.
+  void find(Allowance& allowance) noexcept;
+  [[nodiscard]] const Nearest& nearest_of(std::size_t i) const noexcept { return found_[i]; }
 
   /// Mean of the unit vectors from the axis to all obstacle space within rho of the primitive's surface, weighted by
   /// volume and by the repulsion v(D) = 1 / (1 + exp((2 D / rho - 1) alpha)). Cubes are split until their side is about a
-  /// third of their distance or 1/16 of rho, and count as their centre does. Zero when there is no such space.
-  [[nodiscard]] Eigen::Vector3d mean_direction(Allowance& allowance) noexcept;
+  /// third of their distance or 1/16 of rho, and count as their centre does. For all primitives of the group for which
+  /// `wanted` has its bit; zero where there is no such space.
+  void find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means, Allowance& allowance) noexcept;
 
   [[nodiscard]] const Eigen::Vector3d& origin_world() const noexcept { return origin_world_; }
 
  private:
   struct Box {
     Eigen::Vector3d low, high;
+  };
+  struct LocalAxis {
+    Eigen::Vector3d a, b;
+    double radius_m;
   };
 
   void set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept;
@@ -58,30 +69,37 @@ class Descent {
   [[nodiscard]] bool is_blocked(const Eigen::Vector3d& x_local, double slack_m) const noexcept;
   [[nodiscard]] bool in_space(const Eigen::Vector3d& x_local) const noexcept;
   [[nodiscard]] bool is_free(const Cube& cube) noexcept;
-  [[nodiscard]] bool is_leaf(const Cube& cube) noexcept;
-  void offer(const Cube& cube, Nearest& best) noexcept;
-  void take(const Children& children, Nearest& best) noexcept;
+  [[nodiscard]] bool is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept;
+  [[nodiscard]] bool is_of_interest(const Cube& cube) const noexcept;
+  [[nodiscard]] std::uint32_t all_primitives() const noexcept;
+  void set_bound(std::size_t i, double bound_m) noexcept;
+  void offer(const AxisToBox& pair, std::size_t i) noexcept;
+  void take(Children& children) noexcept;
+  void stop(std::uint32_t primitives, double at_m) noexcept;
 
   const Snapshot& snapshot_;
   const Settings& settings_;
   CubeQuery& query_;
   Frontier& frontier_;
   Count& count_;
-  double radius_m_ = 0;
-  Eigen::Vector3d origin_world_;
+  Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
   double extent_m_ = -1;  ///< how far from the origin the cameras' single-precision guards hold
-  Eigen::Vector3d a_local_, b_local_;
+  std::size_t axis_count_ = 0;
+  std::array<LocalAxis, kGroup> axes_;
+  std::array<Nearest, kGroup> found_;
   Eigen::Vector3d space_low_, space_high_;
   Cube root_{};
   static constexpr std::size_t kLevels = 64;
   std::array<float, kLevels> half_m_{};
   bool has_reach_ = false;   ///< of some camera
+  /// Boxes do not say all: with reach, and where pixels beside each other are free and robot.
+  bool is_exact_ = false;
   double largest_rate_ = 0;  ///< of the cameras' reach with range
   double leaf_half_m_ = 0;
   double least_reach_m_ = 0;
-  int leaf_level_ = 0;       ///< cubes of this level are not split any further
-  int last_level_ = 0;       ///< but where the border of a frustum W runs through one it is split down to this level
-  int exact_level_ = 0;      ///< from this level on a ball is tested too, not only a box, because of the cameras' reach
+  int leaf_level_ = 0;   ///< cubes of this level are not split any further
+  int last_level_ = 0;   ///< but where the border of a frustum W runs through one it is split down to this level
+  int exact_level_ = 0;  ///< from this level on a ball is tested too, not only a box, because of the cameras' reach
 };
 
 }  // namespace depthgrid::search

@@ -12,8 +12,9 @@ namespace depthgrid::search {
 /// A cube of the octree, relative to the query's origin, metres.
 struct Cube {
   float x, y, z;     ///< centre
-  float distance_m;  ///< no point of the cube is nearer to the primitive's axis
+  float distance_m;  ///< no point of the cube is nearer to the axes of its primitives
   std::int32_t level;
+  std::uint32_t primitives;  ///< bit i: it may hold the nearest obstacle of primitive i
 };
 
 /// Cubes come out by bucket, nearest bucket first; within a bucket last in, first out.
@@ -71,6 +72,12 @@ class Frontier {
       return true;
     }
     return false;
+  }
+
+  /// Takes another cube of the bucket that pop() took from, if there is one and it has this level.
+  [[nodiscard]] bool pop_like(std::int32_t level, Cube& cube) noexcept {
+    const std::int32_t slot = heads_[static_cast<std::size_t>(current_)];
+    return slot >= 0 && slots_[static_cast<std::size_t>(slot)].level == level && pop(cube);
   }
 
   /// Nothing open is nearer than this.

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <array>
 
 #include "depthgrid/search/classification.hpp"
 #include "depthgrid/search/descent.hpp"
@@ -12,6 +13,8 @@
 namespace depthgrid::search {
 namespace {
 
+/// Primitives farther apart than this are not searched together, metres.
+constexpr double kGroupExtent = 2.0;
 /// Open cubes that one search may hold.
 constexpr std::size_t kFrontierCapacity = std::size_t{1} << 17;
 
@@ -22,28 +25,36 @@ bool is_valid(const Primitive& primitive) noexcept {
 
 }  // namespace
 
-struct Search::State {
-  explicit State(const Settings& given) : settings(given), frontier(kFrontierCapacity) {
-    std::iota(query.order.begin(), query.order.end(), std::uint8_t{0});
-  }
+/// What is known of a primitive before the search, and how far it has to reach.
+struct Search::Plan {
+  std::size_t answer = 0;  ///< index in the call
+  Primitive primitive;
+  Border border;                  ///< of W, from the end of the axis that is nearer to it
+  Eigen::Vector3d border_axis;    ///< that end
+  double limit_m = 0;             ///< from the axis
+  bool border_bounds = false;     ///< the border counts as obstacle and is nearer than rho
+};
 
-  static void answer(const Snapshot& snapshot, const Primitive& primitive, Descent& descent, Allowance& allowance,
-                     Answer& result) noexcept;
-  static void add_hybrid(const Snapshot& snapshot, const Primitive& primitive, Descent& descent, Allowance& allowance,
-                         Answer& result) noexcept;
+struct Search::State {
+  explicit State(const Settings& given) : settings(given), frontier(kFrontierCapacity) {}
+
   void call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
             const Budget& budget, Count* count, bool with_direction) noexcept;
+  void group(const Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
+             Allowance& allowance, bool with_direction) noexcept;
 
   Settings settings;
   CubeQuery query;
   Frontier frontier;
+  std::array<Plan, kGroup> plans;
+  std::array<Eigen::Vector3d, kGroup> means;
 };
 
-void Search::State::answer(const Snapshot& snapshot, const Primitive& primitive, Descent& descent,
-                           Allowance& allowance, Answer& result) noexcept {
+/// Fills in what needs no search. False when that is all there is to say.
+bool Search::plan(const Snapshot& snapshot, const Primitive& primitive, Answer& result, Plan& plan) noexcept {
   result = Answer{};
   if (!is_valid(primitive)) {
-    return;
+    return false;
   }
   Proximity& nearest = result.nearest;
   nearest.stale = snapshot.stale();
@@ -52,66 +63,96 @@ void Search::State::answer(const Snapshot& snapshot, const Primitive& primitive,
   const Border at_a = border_of_space(snapshot, primitive.a_world);
   const Border at_b = border_of_space(snapshot, primitive.b_world);
   const bool a_first = at_a.distance_m <= at_b.distance_m;
-  const Border& border = a_first ? at_a : at_b;
-  const Eigen::Vector3d& border_axis = a_first ? primitive.a_world : primitive.b_world;
+  plan.primitive = primitive;
+  plan.border = a_first ? at_a : at_b;
+  plan.border_axis = a_first ? primitive.a_world : primitive.b_world;
   const bool outside_counts = s.policies.outside == Policy::obstacle;
-  if (!(border.distance_m >= 0)) {
+  if (!(plan.border.distance_m >= 0)) {
     nearest.state = ProximityState::outside;
     if (outside_counts) {
       nearest.distance_m = 0;
-      nearest.nearest_world = border_axis;
+      nearest.nearest_world = plan.border_axis;
       nearest.direction_world.setZero();
-      result.on_axis_world = border_axis;
+      result.on_axis_world = plan.border_axis;
     }
-    return;
+    return false;
   }
   if (!outside_counts) {
-    nearest.known_to_m = std::max(0.0, border.distance_m - primitive.radius_m);
+    nearest.known_to_m = std::max(0.0, plan.border.distance_m - primitive.radius_m);
   }
-  const double reach_m = s.rho_m + primitive.radius_m;
-  const bool border_bounds = outside_counts && border.distance_m < reach_m;
-  descent.aim(primitive, reach_m);
-  const Nearest found = descent.find(border_bounds ? border.distance_m : reach_m, allowance);
+  plan.limit_m = s.rho_m + primitive.radius_m;
+  plan.border_bounds = outside_counts && plan.border.distance_m < plan.limit_m;
+  plan.limit_m = plan.border_bounds ? plan.border.distance_m : plan.limit_m;
+  return true;
+}
+
+/// Turns what the search found into the answer.
+void Search::finish(const Snapshot& snapshot, const Plan& plan, const Nearest& found,
+                    const Eigen::Vector3d& origin_world, Answer& result) noexcept {
+  Proximity& nearest = result.nearest;
   nearest.budget = found.stopped;
-  nearest.distance_m = std::max(0.0, found.distance_m - primitive.radius_m - kRounding);
+  nearest.distance_m = std::max(0.0, found.distance_m - plan.primitive.radius_m - kRounding);
   if (found.found && !found.stopped) {
-    nearest.nearest_world = found.in_obstacle + descent.origin_world();
-    result.on_axis_world = found.on_axis + descent.origin_world();
+    nearest.nearest_world = found.in_obstacle + origin_world;
+    result.on_axis_world = found.on_axis + origin_world;
     const Classification what = classify(snapshot, nearest.nearest_world);
     nearest.state = what.state;
     nearest.camera = what.camera;
-  } else if (border_bounds && !found.stopped) {
-    nearest.nearest_world = border.point_world;
-    result.on_axis_world = border_axis;
+  } else if (plan.border_bounds && !found.stopped) {
+    nearest.nearest_world = plan.border.point_world;
+    result.on_axis_world = plan.border_axis;
     nearest.state = ProximityState::outside;
   } else {
     nearest.state = ProximityState::beyond_rho;
     if (!found.stopped) {
-      nearest.distance_m = s.rho_m;
+      nearest.distance_m = snapshot.settings().rho_m;
     }
     return;
   }
   const Eigen::Vector3d towards = nearest.nearest_world - result.on_axis_world;
   const double length_m = towards.norm();
-  nearest.direction_world = nearest.distance_m > 0 && length_m > 0 ? (towards / length_m).eval() : Eigen::Vector3d::Zero();
+  nearest.direction_world.setZero();
+  if (nearest.distance_m > 0 && length_m > 0) {
+    nearest.direction_world = towards / length_m;
+  }
 }
 
-Search::Search(const Settings& settings, std::size_t) : state_(std::make_unique<State>(settings)) {}
-Search::~Search() = default;
-Search::Search(Search&&) noexcept = default;
-Search& Search::operator=(Search&&) noexcept = default;
-
-/// V = n + b (t - (t.n) n), normalised: the nearest direction leads, the others only turn it.
-void Search::State::add_hybrid(const Snapshot& snapshot, const Primitive& primitive, Descent& descent,
-                               Allowance& allowance, Answer& result) noexcept {
-  const Eigen::Vector3d n = result.nearest.direction_world;
-  if (!n.allFinite() || n.isZero() || result.nearest.budget) {
+void Search::State::group(const Snapshot& snapshot, std::span<const Plan> group_plans, std::span<Answer> answers,
+                          Descent& descent, Allowance& allowance, bool with_direction) noexcept {
+  const double rho_m = snapshot.settings().rho_m;
+  Eigen::Vector3d low = group_plans.front().primitive.a_world;
+  Eigen::Vector3d high = low;
+  double reach_m = 0;
+  for (const Plan& p : group_plans) {
+    low = low.cwiseMin(p.primitive.a_world).cwiseMin(p.primitive.b_world);
+    high = high.cwiseMax(p.primitive.a_world).cwiseMax(p.primitive.b_world);
+    reach_m = std::max(reach_m, rho_m + p.primitive.radius_m);
+  }
+  descent.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + reach_m);
+  for (const Plan& p : group_plans) {
+    descent.add(p.primitive, p.limit_m);
+  }
+  descent.find(allowance);
+  std::uint32_t wanted = 0;
+  for (std::size_t i = 0; i < group_plans.size(); ++i) {
+    Answer& result = answers[group_plans[i].answer];
+    finish(snapshot, group_plans[i], descent.nearest_of(i), descent.origin_world(), result);
+    const Eigen::Vector3d& n = result.nearest.direction_world;
+    wanted |= n.allFinite() && !n.isZero() ? 1U << i : 0U;
+  }
+  if (!with_direction || wanted == 0) {
     return;
   }
-  const Settings& s = snapshot.settings();
-  descent.aim(primitive, s.rho_m + primitive.radius_m);
-  const Eigen::Vector3d t = descent.mean_direction(allowance);
-  result.hybrid_direction_world = (n + s.direction_blend * (t - t.dot(n) * n)).normalized();
+  // V = n + b (t - (t.n) n), normalised: the nearest direction leads, the others only turn it.
+  descent.find_mean_directions(wanted, means, allowance);
+  for (std::size_t i = 0; i < group_plans.size(); ++i) {
+    if (((wanted >> i) & 1U) != 0) {
+      Answer& result = answers[group_plans[i].answer];
+      const Eigen::Vector3d& n = result.nearest.direction_world;
+      const Eigen::Vector3d& t = means[i];
+      result.hybrid_direction_world = (n + snapshot.settings().direction_blend * (t - t.dot(n) * n)).normalized();
+    }
+  }
 }
 
 void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
@@ -127,20 +168,45 @@ void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> pr
                              std::chrono::duration<double>(std::min(budget.time_s, 1e6)));
   }
   const std::size_t both = std::min(primitives.size(), answers.size());
-  for (std::size_t i = 0; i < both; ++i) {
-    // What the primitives before have left is shared evenly by the rest.
-    const auto share = nodes_left / static_cast<std::int64_t>(both - i);
-    allowance.nodes = share;
-    answer(snapshot, primitives[i], descent, allowance, answers[i]);
-    if (with_direction) {
-      add_hybrid(snapshot, primitives[i], descent, allowance, answers[i]);
+  std::size_t next = 0;
+  while (next < both) {
+    // A group: primitives in the order given, as long as they are near to each other.
+    const std::size_t first = next;
+    std::size_t size = 0;
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(1e30);
+    Eigen::Vector3d high = -low;
+    for (; next < both && size < kGroup; ++next) {
+      if (!plan(snapshot, primitives[next], answers[next], plans[size])) {
+        continue;
+      }
+      const Eigen::Vector3d to_low = low.cwiseMin(primitives[next].a_world).cwiseMin(primitives[next].b_world);
+      const Eigen::Vector3d to_high = high.cwiseMax(primitives[next].a_world).cwiseMax(primitives[next].b_world);
+      if (size > 0 && (to_high - to_low).maxCoeff() > kGroupExtent) {
+        break;
+      }
+      low = to_low;
+      high = to_high;
+      plans[size++].answer = next;
     }
-    nodes_left -= share - allowance.nodes;
+    if (size == 0) {
+      continue;
+    }
+    // What the groups before have left is shared evenly by the rest.
+    const auto share = nodes_left / static_cast<std::int64_t>(both - first) * static_cast<std::int64_t>(next - first);
+    allowance.nodes = next == both ? nodes_left : share;
+    const std::int64_t given = allowance.nodes;
+    group(snapshot, {plans.data(), size}, answers, descent, allowance, with_direction);
+    nodes_left -= given - allowance.nodes;
   }
   for (std::size_t i = both; i < answers.size(); ++i) {
     answers[i] = Answer{};
   }
 }
+
+Search::Search(const Settings& settings, std::size_t) : state_(std::make_unique<State>(settings)) {}
+Search::~Search() = default;
+Search::Search(Search&&) noexcept = default;
+Search& Search::operator=(Search&&) noexcept = default;
 
 void Search::distances(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
                        const Budget& budget, Count* count) noexcept {

@@ -52,6 +52,8 @@ struct Count {
   std::int64_t ball_tests = 0;  ///< exact tests of a ball against one camera
 };
 
+struct Nearest;
+
 /// Scratch memory of one thread; everything is allocated by the constructor. Not for two threads at once.
 class Search {
  public:
@@ -73,6 +75,11 @@ class Search {
 
  private:
   struct State;
+  struct Plan;
+  [[nodiscard]] static bool plan(const Snapshot& snapshot, const Primitive& primitive, Answer& result,
+                                 Plan& plan) noexcept;
+  static void finish(const Snapshot& snapshot, const Plan& plan, const Nearest& found,
+                     const Eigen::Vector3d& origin_world, Answer& result) noexcept;
   std::unique_ptr<State> state_;
 };
 
