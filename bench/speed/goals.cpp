@@ -115,7 +115,7 @@ std::string broken_claim(const Report& report) {
   const auto nine = [&report](const char* row, double cameras) {
     return report.number("call_median_s", kClean, row, {{"cameras", cameras}});
   };
-  if (at_least("`letter` takes the time of the search", letter_ratio(report, "letter, hybrid", "search"), 5) ||
+  if (at_least("`letter` takes the time of the search", letter_ratio(report, "letter, hybrid", "search"), 2) ||
       at_least("a nanoflann cycle takes the time of ours", cycle_ratio(report, "side by side", "nanoflann, cell"), 5) ||
       at_least("an OctoMap cycle takes the time of ours", cycle_ratio(report, "side by side", "OctoMap 5 cm + EDT"),
                30) ||
