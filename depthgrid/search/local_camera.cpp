@@ -26,7 +26,7 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
                 LocalCamera& local) noexcept {
   const View& view = snapshot.view(camera);
   const RigCamera& rig_camera = snapshot.camera(camera);
-  const Pose& T_world_camera = view.T_world_camera();
+  const Pose& T_world_camera = snapshot.T_world_camera(camera);
   local.view = &view;
   local.pinhole = rig_camera.intrinsics;
   local.near_m = rig_camera.rule.near_m;

@@ -38,7 +38,7 @@ Border border_of_space(const Snapshot& snapshot, const Eigen::Vector3d& p_world)
                          p_world);
   }
   const auto& frustum = std::get<FrustumSpace>(settings.space);
-  const Pose& T_world_camera = snapshot.view(frustum.principal).T_world_camera();
+  const Pose& T_world_camera = snapshot.T_world_camera(frustum.principal);
   const PinholeCamera& c = snapshot.camera(frustum.principal).intrinsics;
   const V p = T_world_camera.linear().transpose() * (p_world - T_world_camera.translation());
   const double left = -c.cx_px / c.fx_px;

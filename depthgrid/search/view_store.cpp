@@ -219,6 +219,10 @@ void Snapshot::release() noexcept {
 }
 
 std::size_t Snapshot::camera_count() const noexcept { return state_ != nullptr ? state_->cameras.size() : 0; }
+const Pose& Snapshot::T_world_camera(std::size_t k) const noexcept {
+  return view(k).present() ? view(k).T_world_camera() : camera(k).T_world_camera;
+}
+
 const View& Snapshot::view(std::size_t camera) const noexcept {
   return state_->cameras[camera].views[slot_of(slots_, camera)];
 }

@@ -66,6 +66,8 @@ class Snapshot {
   /// e_k of this snapshot; time_m = v_max (|t_k - t_ref| + half exposure + time uncertainty).
   [[nodiscard]] const PoseMargin& pose_margin(std::size_t camera) const noexcept;
   [[nodiscard]] const RigCamera& camera(std::size_t camera) const noexcept;
+  /// Where the camera was at its newest usable frame; where the rig says while there is none.
+  [[nodiscard]] const Pose& T_world_camera(std::size_t camera) const noexcept;
   [[nodiscard]] const Settings& settings() const noexcept;
   /// Newest exposure of all cameras present; NaN when there is none.
   [[nodiscard]] double reference_time_s() const noexcept { return reference_time_s_; }
