@@ -127,17 +127,18 @@ Window window_of(const PinholeCamera& camera, const Eigen::Vector3d& p, double r
   return {u0, v0, u1, v1};
 }
 
-bool leaves_view(const PinholeCamera& c, const Eigen::Vector3d& p, double radius_m) noexcept {
-  if (p.z() <= radius_m) {
-    return true;
-  }
+/// How far inside the image's four borders a point in front of the camera lies; negative outside.
+double inside_image_m(const PinholeCamera& c, const Eigen::Vector3d& p) noexcept {
   // Distance to the planes x = s z through the camera's centre and the image's borders.
   const auto inside_m = [&](double x, double slope, double sign) {
     return sign * (x - slope * p.z()) / std::sqrt(1 + slope * slope);
   };
   return std::min({inside_m(p.x(), -c.cx_px / c.fx_px, 1), inside_m(p.x(), (c.width_px - c.cx_px) / c.fx_px, -1),
-                   inside_m(p.y(), -c.cy_px / c.fy_px, 1), inside_m(p.y(), (c.height_px - c.cy_px) / c.fy_px, -1)}) <=
-         radius_m;
+                   inside_m(p.y(), -c.cy_px / c.fy_px, 1), inside_m(p.y(), (c.height_px - c.cy_px) / c.fy_px, -1)});
+}
+
+bool leaves_view(const PinholeCamera& c, const Eigen::Vector3d& p, double radius_m) noexcept {
+  return p.z() <= radius_m || inside_image_m(c, p) <= radius_m;
 }
 
 }  // namespace
@@ -168,6 +169,10 @@ bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Ve
     }
   }
   return false;
+}
+
+bool covers_some(const LocalCamera& camera, const Eigen::Vector3d& p_camera, double radius_m) noexcept {
+  return p_camera.z() + radius_m >= camera.near_m && inside_image_m(camera.pinhole, p_camera) >= -radius_m;
 }
 
 }  // namespace depthgrid::search

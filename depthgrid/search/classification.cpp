@@ -74,6 +74,7 @@ Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world
       const double aside_px = slack_m * std::max(camera.intrinsics.fx_px, camera.intrinsics.fy_px) / p.depth_m;
       const int window_px = margin.lateral_px + 1 + static_cast<int>(std::min(aside_px, kWidestLook));
       seen = look(view, margin, u, v, p.depth_m, slack_m, window_px);
+      seen.unmeasured = seen.unmeasured || p.depth_m - slack_m <= camera.rule.near_m;
       // Beyond the widest look: the camera looks there and does not free it, so something is before it.
       seen.occluded = seen.occluded || (!seen.measured && !seen.unmeasured);
     }

@@ -317,7 +317,7 @@ HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local,
   const auto reaches = [&](V free_m, V side) HWY_ATTR {
     const V rest = hn::Sub(hn::Mul(slack, slack), hn::Mul(hn::Mul(side, side), square));
     const V depth = hn::Sub(hn::Mul(cosine, hn::Sqrt(hn::Max(rest, zero))), hn::Mul(hn::Mul(side, slant), cosine));
-    return hn::And(hn::Ge(rest, zero), hn::Le(free_m, hn::Add(z, hn::Max(depth, zero))));
+    return hn::And(hn::Le(side, slack), hn::Le(free_m, hn::Add(z, hn::Max(depth, zero))));
   };
   const I width = hn::Set(di, camera.width_px);
   const I line0 = hn::Mul(row, width);

@@ -45,10 +45,10 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   const double slant = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   // A depth h beyond x at lateral distance s is within the slack if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
   const auto reaches = [&](int i, int j, double side_m) {
-    const double rest = slack * slack - side_m * side_m * cosine * cosine;
-    if (rest < 0 || !c.contains(i, j)) {
+    if (side_m > slack || !c.contains(i, j)) {
       return false;
     }
+    const double rest = slack * slack - side_m * side_m * cosine * cosine;
     const double z_m = x.z() + std::max(0.0, cosine * std::sqrt(rest) - side_m * slant * cosine);
     const auto free_m = static_cast<double>(camera.view->free_m().at(i, j));
     if (z_m < free_m) {
@@ -81,16 +81,12 @@ Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier,
     least_reach_m_ = std::min(least_reach_m_, reach_m);
     largest_rate_ = std::max(largest_rate_, e.rotation_rad);
   }
-  // What keeps a camera from freeing a cube lies in the cube's bounds in that camera's frame, whose diagonal is at most
-  // sqrt(3) times the cube's. With reach those bounds are grown to all sides, so the last word is a ball's; e_k varies by
-  // less than rate * diagonal within a cube.
+  // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and reach of each
+  // of its points. Without reach leaves are smaller, because then boxes free nearly all of what balls free, and sooner; e_k
+  // varies by less than rate * diagonal within a cube.
   const double leaf_diagonal_m =
-      has_reach_ ? (settings_.resolution_m - 2e-5) / (1 + largest_rate_) : (settings_.resolution_m - 5e-5) / kSqrt3;
+      has_reach_ ? (settings_.resolution_m - 2e-5) / (1 + largest_rate_) : settings_.resolution_m / kSqrt3;
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
-  is_exact_ = has_reach_;
-  for (std::size_t k = 0; k < query_.camera_count; ++k) {
-    is_exact_ = is_exact_ || snapshot.view(k).has_islands();
-  }
 }
 
 void Descent::set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept {
@@ -202,7 +198,8 @@ bool Descent::is_free(const Cube& cube) noexcept {
     if (!meets_not_free(camera, camera.space, c, half_diagonal_m + reach_m)) {
       return true;
     }
-    uncovered = uncovered && !camera.has_reach && !meets_not_free(camera, camera.coverage, c, half_diagonal_m);
+    uncovered = uncovered && (camera.has_reach ? !covers_some(camera, c, half_diagonal_m)
+                                               : !meets_not_free(camera, camera.coverage, c, half_diagonal_m));
   }
   return uncovered;
 }
@@ -291,7 +288,7 @@ void Descent::take(Children& children) noexcept {
         child.primitives &= ~(1U << i);
       }
     }
-    if (child.primitives == 0 || (is_exact_ && child.level >= exact_level_ && is_free(child))) {
+    if (child.primitives == 0 || (child.level >= exact_level_ && is_free(child))) {
       continue;
     }
     if (child.level >= leaf_level_) {

@@ -92,8 +92,6 @@ class Descent {
   static constexpr std::size_t kLevels = 64;
   std::array<float, kLevels> half_m_{};
   bool has_reach_ = false;   ///< of some camera
-  /// Boxes do not say all: with reach, and where pixels beside each other are free and robot.
-  bool is_exact_ = false;
   double largest_rate_ = 0;  ///< of the cameras' reach with range
   double leaf_half_m_ = 0;
   double least_reach_m_ = 0;
