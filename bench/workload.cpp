@@ -108,13 +108,15 @@ simulation::Arm workload_arm(double time_s) noexcept {
                           1.35 + 0.15 * wave(time_s, 1.0, 0.1), 0.0, -0.5 + 0.2 * wave(time_s, 0.9, 0.5), 0.0});
 }
 
-simulation::Scene workload_scene(double time_s) {
+simulation::Scene workload_scene(double time_s, RobotInView robot) {
   Scene scene;
   add_room(scene);
   add_table(scene);
   add_people(scene, time_s);
-  for (const simulation::Capsule& link : workload_arm(time_s).links) {
-    scene.add(link, Body::robot);
+  if (robot == RobotInView::masked) {
+    for (const simulation::Capsule& link : workload_arm(time_s).links) {
+      scene.add(link, Body::robot);
+    }
   }
   return scene;
 }
@@ -151,7 +153,7 @@ Workload::Workload(int cameras, int frame_sets, const std::function<void(int, in
     : Workload(workload_rig(cameras), frame_sets, kWorkloadRobotPadding, progress) {}
 
 Workload::Workload(const Rig& rig, int frame_sets, double robot_padding_m,
-                   const std::function<void(int, int)>& progress)
+                   const std::function<void(int, int)>& progress, RobotInView robot)
     : rig_(rig), frame_sets_(frame_sets) {
   if (frame_sets < 1) {
     fail("workload: ", frame_sets, " frame sets, must be at least 1");
@@ -159,7 +161,7 @@ Workload::Workload(const Rig& rig, int frame_sets, double robot_padding_m,
   const int total = static_cast<int>(rig.cameras.size()) * frame_sets;
   images_.reserve(static_cast<std::size_t>(total));
   for (int set = 0; set < frame_sets; ++set) {
-    const Scene scene = workload_scene(time_s(set));
+    const Scene scene = workload_scene(time_s(set), robot);
     for (const RigCamera& camera : rig_.cameras) {
       simulation::View view = scene.render(camera.intrinsics, camera.T_world_camera, robot_padding_m);
       const std::size_t pixels =
@@ -172,7 +174,9 @@ Workload::Workload(const Rig& rig, int frame_sets, double robot_padding_m,
       Frame frame;
       frame.depth = depth_view(std::span<const std::uint16_t>(kept.depth_mm), camera.intrinsics.width_px,
                                camera.intrinsics.height_px, camera.metres_per_unit);
-      frame.robot = {kept.robot_near_m.data(), kept.robot_far_m.data(), camera.intrinsics.width_px};
+      if (robot == RobotInView::masked) {
+        frame.robot = {kept.robot_near_m.data(), kept.robot_far_m.data(), camera.intrinsics.width_px};
+      }
       frame.time_s = time_s(set);
       frames_.push_back(frame);
       if (progress) {

@@ -28,8 +28,11 @@ inline constexpr std::size_t kWorkloadControlPoints = 9;
 /// The first `cameras` of the eight. Throws Error unless 1 <= cameras <= 8.
 [[nodiscard]] Rig workload_rig(int cameras = kWorkloadCameras);
 
+/// Whether the cameras see the arm (and its interval), or look through it as if it had been removed perfectly.
+enum class RobotInView : std::uint8_t { masked, removed };
+
 /// The scene at a time in seconds; the arm is Body::robot.
-[[nodiscard]] simulation::Scene workload_scene(double time_s);
+[[nodiscard]] simulation::Scene workload_scene(double time_s, RobotInView robot = RobotInView::masked);
 
 /// The arm at a time in seconds.
 [[nodiscard]] simulation::Arm workload_arm(double time_s) noexcept;
@@ -48,7 +51,8 @@ class Workload {
   explicit Workload(int cameras = kWorkloadCameras, int frame_sets = kWorkloadFrameSets,
                     const std::function<void(int, int)>& progress = {});
   /// The same scene with another rig (another size of images, fewer cameras) or another padding of the robot.
-  Workload(const Rig& rig, int frame_sets, double robot_padding_m, const std::function<void(int, int)>& progress = {});
+  Workload(const Rig& rig, int frame_sets, double robot_padding_m, const std::function<void(int, int)>& progress = {},
+           RobotInView robot = RobotInView::masked);
 
   [[nodiscard]] const Rig& rig() const noexcept { return rig_; }
   [[nodiscard]] int frame_sets() const noexcept { return frame_sets_; }
