@@ -1,6 +1,7 @@
 #include "depthgrid/search/cube_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <utility>
 
@@ -87,23 +88,34 @@ HWY_INLINE Rectangle project(const LocalCamera& camera, const Bounds& b, V z_low
           hn::Add(hn::Mul(most(b.y_high), fy), hn::Set(d, camera.cy + camera.guard_px))};
 }
 
-/// Rectangles of pixels, one a lane, and the level that covers all of them with four texels each.
+/// Rectangles of pixels, one a lane, and the few texels of one level that cover all of them.
 struct Footprint {
-  I corner_00, corner_01, corner_10, corner_11;  ///< indices into the level
-  std::size_t level;                             ///< index into LocalCamera::texels
+  std::array<I, 4> column;
+  std::array<I, 4> row;  ///< times the level's width
+  int side;              ///< how many of them there are: 1 to 4
+  std::size_t level;     ///< index into LocalCamera::texels
 };
 
 HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1) {
   const Ints di;
   const auto last =
       static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0)))));
-  // Two by two pixels are looked up one by one; 6 2^l + 1 pixels lie in at most eight texel columns of level l wherever
-  // they begin.
-  // The coarsest level has the whole image in eight columns.
-  const std::size_t level =
-      last <= 1 ? 0
-                : std::min(1 + static_cast<std::size_t>(std::bit_width((last - 1) / 6)),
-                           static_cast<std::size_t>(camera.level_count));
+  // Up to three by three pixels are looked up one by one, so that not one too many counts; 6 2^l + 1 pixels lie in at
+  // most eight texel columns of level l wherever they begin. The coarsest level has the whole image in eight.
+  if (last <= (camera.has_islands ? 3U : 2U)) {
+    const I width = hn::Set(di, camera.width_px);
+    Footprint result;
+    result.side = static_cast<int>(last) + 1;
+    result.level = 0;
+    for (int n = 0; n < result.side; ++n) {
+      const auto at = static_cast<std::size_t>(n);
+      result.column[at] = hn::Min(hn::Add(u0, hn::Set(di, n)), u1);
+      result.row[at] = hn::Mul(hn::Min(hn::Add(v0, hn::Set(di, n)), v1), width);
+    }
+    return result;
+  }
+  const std::size_t level = std::min(1 + static_cast<std::size_t>(std::bit_width((last - 1) / 6)),
+                                     static_cast<std::size_t>(camera.level_count));
   const Texels& texels = camera.texels[level];
   const I width = hn::Set(di, texels.width);
   const I back = hn::Set(di, texels.back);
@@ -111,9 +123,7 @@ HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1
   const I j0 = hn::ShiftRightSame(v0, texels.shift);
   const I i1 = hn::Max(i0, hn::Sub(hn::ShiftRightSame(u1, texels.shift), back));
   const I j1 = hn::Max(j0, hn::Sub(hn::ShiftRightSame(v1, texels.shift), back));
-  const I row0 = hn::Mul(j0, width);
-  const I row1 = hn::Mul(j1, width);
-  return {hn::Add(row0, i0), hn::Add(row0, i1), hn::Add(row1, i0), hn::Add(row1, i1), level};
+  return {{i0, i1, i1, i1}, {hn::Mul(j0, width), hn::Mul(j1, width), u0, u0}, 2, level};
 }
 
 /// The extremum of an image over a footprint.
@@ -122,8 +132,13 @@ HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const floa
                       Pick pick) {
   const Floats d;
   const float* HWY_RESTRICT values = at.level == 0 ? image : pyramid + camera.texels[at.level].offset;
-  return pick(pick(hn::GatherIndex(d, values, at.corner_00), hn::GatherIndex(d, values, at.corner_01)),
-              pick(hn::GatherIndex(d, values, at.corner_10), hn::GatherIndex(d, values, at.corner_11)));
+  V result = hn::GatherIndex(d, values, hn::Add(at.row[0], at.column[0]));
+  for (int n = 1; n < at.side * at.side; ++n) {
+    const auto row = static_cast<std::size_t>(n / at.side);
+    const auto column = static_cast<std::size_t>(n % at.side);
+    result = pick(result, hn::GatherIndex(d, values, hn::Add(at.row[row], at.column[column])));
+  }
+  return result;
 }
 
 /// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high.
@@ -147,7 +162,8 @@ HWY_INLINE M free_or_island(const LocalCamera& camera, M inside, const Footprint
   const V blind = hn::Set(d, camera.blind_m);
   if (at.level == 0) {
     M result = inside;
-    for (const I& corner : {at.corner_00, at.corner_01, at.corner_10, at.corner_11}) {
+    for (int n = 0; n < at.side * at.side; ++n) {
+      const I corner = hn::Add(at.row[static_cast<std::size_t>(n / at.side)], at.column[static_cast<std::size_t>(n % at.side)]);
       const V near_m = hn::GatherIndex(d, view.island_near_m().data(), corner);
       const V far_m = hn::GatherIndex(d, view.island_far_m().data(), corner);
       const V free_m = hn::GatherIndex(d, camera.free_m, corner);
@@ -236,8 +252,9 @@ HWY_INLINE V clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); 
 
 /// The axis and the boxes.
 struct Proximities {
-  V distance;             ///< no point of the box is nearer to the axis
-  V near_x, near_y, near_z;  ///< a point of the box: the nearest for a point, roughly the nearest for a segment
+  V distance;  ///< no point of the box is nearer to the axis
+  /// A point at that distance from the axis, towards the box's centre: where an answer of that distance may point to.
+  V near_x, near_y, near_z;
 };
 
 HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
@@ -246,7 +263,6 @@ HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
   V px = hn::Set(d, axis.a[0]);
   V py = hn::Set(d, axis.a[1]);
   V pz = hn::Set(d, axis.a[2]);
-  V off_axis = zero;
   const bool segment = axis.inverse_square != 0;
   if (segment) {
     const V ax = hn::Sub(boxes.x, px);
@@ -257,18 +273,24 @@ HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
     px = hn::Add(px, hn::Mul(t, hn::Set(d, axis.along[0])));
     py = hn::Add(py, hn::Mul(t, hn::Set(d, axis.along[1])));
     pz = hn::Add(pz, hn::Mul(t, hn::Set(d, axis.along[2])));
-    off_axis = length(hn::Sub(boxes.x, px), hn::Sub(boxes.y, py), hn::Sub(boxes.z, pz));
   }
+  const V x = hn::Sub(boxes.x, px);
+  const V y = hn::Sub(boxes.y, py);
+  const V z = hn::Sub(boxes.z, pz);
+  const V to_centre = length(x, y, z);
   Proximities result;
-  result.near_x = clamp(px, hn::Sub(boxes.x, boxes.half_x), hn::Add(boxes.x, boxes.half_x));
-  result.near_y = clamp(py, hn::Sub(boxes.y, boxes.half_y), hn::Add(boxes.y, boxes.half_y));
-  result.near_z = clamp(pz, hn::Sub(boxes.z, boxes.half_z), hn::Add(boxes.z, boxes.half_z));
   if (segment) {
     // The ball around the box: another point of the axis may be nearer to the box than the one nearest to its centre.
-    result.distance = hn::Max(hn::Sub(off_axis, boxes.half_diagonal), zero);
+    result.distance = hn::Max(hn::Sub(to_centre, boxes.half_diagonal), zero);
   } else {
-    result.distance = length(hn::Sub(result.near_x, px), hn::Sub(result.near_y, py), hn::Sub(result.near_z, pz));
+    result.distance = length(hn::Max(hn::Sub(hn::Abs(x), boxes.half_x), zero),
+                             hn::Max(hn::Sub(hn::Abs(y), boxes.half_y), zero),
+                             hn::Max(hn::Sub(hn::Abs(z), boxes.half_z), zero));
   }
+  const V share = hn::Div(result.distance, hn::Max(to_centre, hn::Set(d, 1e-9F)));
+  result.near_x = hn::Add(px, hn::Mul(x, share));
+  result.near_y = hn::Add(py, hn::Mul(y, share));
+  result.near_z = hn::Add(pz, hn::Mul(z, share));
   return result;
 }
 

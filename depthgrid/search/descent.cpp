@@ -215,6 +215,19 @@ bool Descent::is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept {
   return in_space(nearest(axis.a, axis.b, box.low, box.high).in_box);
 }
 
+/// The cube's distance from the axis, and the point at that distance towards the cube's centre. Nothing in the cube is
+/// nearer, so an answer may point there instead of to the cube's nearest corner, which is farther from what is in it.
+AxisToBox Descent::towards_centre(const Cube& cube, const LocalAxis& axis) const noexcept {
+  const Box box = box_of(cube);
+  const double distance_m = nearest(axis.a, axis.b, box.low, box.high).distance_m;
+  const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
+  AxisToBox result = nearest(axis.a, axis.b, centre, centre);
+  const double share = result.distance_m > 0 ? distance_m / result.distance_m : 0.0;
+  result.in_box = result.on_axis + share * (centre - result.on_axis);
+  result.distance_m = distance_m;
+  return result;
+}
+
 std::size_t Descent::add(const Primitive& primitive, double limit_m) noexcept {
   const std::size_t i = axis_count_++;
   axes_[i] = {primitive.a_world - origin_world_, primitive.b_world - origin_world_, primitive.radius_m};
@@ -281,8 +294,7 @@ void Descent::take(Children& children) noexcept {
     }
     for (std::uint32_t rest = children.touching[static_cast<std::size_t>(n)]; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const Box box = box_of(child);
-      const AxisToBox pair = nearest(axes_[i].a, axes_[i].b, box.low, box.high);
+      const AxisToBox pair = towards_centre(child, axes_[i]);
       if (is_blocked(pair.in_box, settings_.resolution_m - 1e-5)) {
         offer(pair, i);
         child.primitives &= ~(1U << i);

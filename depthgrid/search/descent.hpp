@@ -70,6 +70,7 @@ class Descent {
   [[nodiscard]] bool in_space(const Eigen::Vector3d& x_local) const noexcept;
   [[nodiscard]] bool is_free(const Cube& cube) noexcept;
   [[nodiscard]] bool is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept;
+  [[nodiscard]] AxisToBox towards_centre(const Cube& cube, const LocalAxis& axis) const noexcept;
   [[nodiscard]] bool is_of_interest(const Cube& cube) const noexcept;
   [[nodiscard]] std::uint32_t all_primitives() const noexcept;
   void set_bound(std::size_t i, double bound_m) noexcept;
