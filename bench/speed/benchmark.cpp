@@ -9,6 +9,7 @@
 
 #include "goals.hpp"
 #include "machine.hpp"
+#include "markdown.hpp"
 #include "our_figures.hpp"
 #include "page.hpp"
 #include "plots.hpp"
@@ -69,44 +70,53 @@ Report measure(const Plan& plan) {
       select(kinds, {"search", "letter, minimum", "lattice 20 mm", "maximum of the cameras' scans",
                      "scan of the arm box's cloud", "nanoflann, cell", "OctoMap 5 cm + EDT"});
   // Weights of the progress line only; a run of another length keeps its proportions.
-  const double per_stage_s = 25;
+  const double per_stage_s = 4 + 4 * plan.ours.limit_s;
   const double per_row_s = plan.side_by_side.limit_s * 0.4;
   const auto stages = static_cast<double>(plan.cameras.size());
-  Progress progress(0.1 * plan.frame_sets * 16 + 2 * stages * per_stage_s +
-                    (stages + 1) * static_cast<double>(kinds.size()) * per_row_s + 8 * per_row_s);
+  Progress progress(0.1 * plan.frame_sets * 24 + 3 * stages * per_stage_s +
+                    (stages + 2) * static_cast<double>(kinds.size()) * per_row_s + 8 * per_row_s);
   Report report;
   report.about["machine"] = machine_line();
 
-  const int most = *std::max_element(plan.cameras.begin(), plan.cameras.end());
-  progress.step("rendering", 0.1 * plan.frame_sets * 16);
-  const int rendered = std::max(most, 2);  // for the sweeps
+  progress.step("rendering", 0.1 * plan.frame_sets * 24);
+  const int rendered = std::max(2, *std::max_element(plan.cameras.begin(), plan.cameras.end()));  // 2: for the sweeps
+  const Rig rig = workload_rig(rendered);
   const Workload workload(rendered, plan.frame_sets);
-  const Workload padded(workload_rig(rendered), plan.frame_sets, kNoisyRobotPadding);
+  const Workload without_robot(rig, plan.frame_sets, 0, {}, RobotInView::removed);
+  const Workload padded(rig, plan.frame_sets, kNoisyRobotPadding);
   const NoisyWorkload noise(padded);
   const OurMargins ideal{{0, 0, 0, 1}, {}};
   const OurMargins covering{noise_margin(), {0.005, 0.001, 0}};
   for (const int cameras : plan.cameras) {
     const std::string with = ", " + std::to_string(cameras) + " cameras";
     Stage clean(workload, nullptr, cameras);
+    Stage removed(without_robot, nullptr, cameras);
     Stage noisy(padded, &noise, cameras);
-    progress.step("ours" + with, per_stage_s);
-    measure_ours(clean, "W", ideal, plan.ours, report);
-    measure_beside_letter(clean, plan.ours, report);
+    const auto measure_one = [&](Stage& stage, const WorkloadName& name, const OurMargins& margins) {
+      progress.step(std::string("ours, ") + name.key + with, per_stage_s);
+      measure_ours(stage, name.key, margins, plan.ours, report);
+      if (&stage != &noisy) {
+        measure_beside_letter(stage, name.key, plan.ours, report);
+      }
+    };
+    measure_one(clean, kWorkloadNames[0], ideal);
+    measure_one(removed, kWorkloadNames[1], ideal);
+    measure_one(noisy, kWorkloadNames[2], covering);
     measure_adversarial(clean, plan.ours, report);
-    progress.step("ours, noisy" + with, per_stage_s);
-    measure_ours(noisy, "noisy", covering, plan.ours, report);
     for (const PeerKind& kind : kinds) {
-      SideBySidePlan row_plan = plan.side_by_side;
-      if (progress.elapsed_s() > kLateS) {
-        row_plan.limit_s = std::min(row_plan.limit_s, 1.0);
+      const auto beside = [&](Stage& stage, const WorkloadName& name) {
+        progress.step(kind.name + with + ", " + name.key, per_row_s);
+        SideBySidePlan row_plan = plan.side_by_side;
+        row_plan.limit_s = progress.elapsed_s() > kLateS ? std::min(row_plan.limit_s, 1.0) : row_plan.limit_s;
+        measure_side_by_side(stage, kind, name.key, row_plan, report);
+      };
+      if (cameras > kind.most_cameras) {
+        continue;
       }
-      if (cameras <= kind.most_cameras) {
-        progress.step(kind.name + with, per_row_s);
-        measure_side_by_side(clean, kind, "side by side", row_plan, report);
-      }
+      beside(clean, kWorkloadNames[0]);
       if (cameras == 2) {
-        progress.step(kind.name + with + ", noisy", per_row_s);
-        measure_side_by_side(noisy, kind, "side by side, noise", row_plan, report);
+        beside(removed, kWorkloadNames[1]);
+        beside(noisy, kWorkloadNames[2]);
       }
     }
   }
@@ -120,9 +130,8 @@ Report measure(const Plan& plan) {
   progress.step("size of the images", 2 * per_row_s);
   sweep_image(swept, plan.sweeps, report);
   progress.finish();
-  report.about["run"] = std::to_string(plan.frame_sets) + " frame sets, " +
-                        std::to_string(static_cast<int>(progress.elapsed_s() / 60)) + " minutes" +
-                        (plan.skipped.empty() ? "." : "; a quick run: its figures are no measurement.");
+  report.about["run"] = std::to_string(plan.frame_sets) + " frame sets, " + digits3(progress.elapsed_s() / 60) +
+                        " minutes" + (plan.skipped.empty() ? "." : "; a quick run: its figures are no measurement.");
   return report;
 }
 

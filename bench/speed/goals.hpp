@@ -1,6 +1,7 @@
 // What the search should reach, held against what was measured.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -8,17 +9,25 @@
 
 namespace depthgrid::bench {
 
-/// One line of the table of goals. Values are in the unit that the text of the bound names; NaN: not measured.
+/// What is measured on: the name that ends the names of groups, as in "ours, W", and its title on the page.
+struct WorkloadName {
+  const char* key;
+  const char* title;
+};
+inline constexpr std::array<WorkloadName, 3> kWorkloadNames{{{"W", "workload W, robot masked"},
+                                                             {"W without robot", "workload W, robot removed"},
+                                                             {"noisy", "noisy, robot masked, with margins"}}};
+
+/// One line of the table of goals.
 struct Goal {
   std::string what;
   std::string bound_text;  ///< for instance "<= 0.25 ms"
   double bound = 0;
-  bool at_most = true;  ///< else at least
-  double clean = 0;     ///< on workload W
-  double noisy = 0;     ///< on its noisy variant; NaN where it does not apply
-  int digits = 3;
+  bool at_most = true;         ///< else at least
+  std::vector<double> values;  ///< one a workload, in the unit of the bound; NaN where it was not measured
 
   [[nodiscard]] bool met(double value) const { return at_most ? value <= bound : value >= bound; }
+  [[nodiscard]] bool missed() const;
 };
 
 [[nodiscard]] std::vector<Goal> goals(const Report& report);

@@ -44,6 +44,13 @@ std::string whole(double value) {
   return digits;
 }
 
+std::string milliseconds(double value_s) { return digits3(1e3 * value_s); }
+std::string microseconds(double value_s) { return digits3(1e6 * value_s); }
+std::string millimetres(double value_m) {
+  const double value = std::round(1e4 * value_m) / 10;
+  return std::isnan(value) ? "-" : value >= 10 ? whole(value) : digits3(value).substr(0, 3);
+}
+
 MarkdownTable::MarkdownTable(const std::vector<std::string>& head) : text_(line(head)) {
   for (std::size_t i = 0; i < head.size(); ++i) {
     text_ += "|---";

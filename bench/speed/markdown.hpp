@@ -11,6 +11,12 @@ namespace depthgrid::bench {
 /// As a whole number with blanks between thousands; "-" for NaN.
 [[nodiscard]] std::string whole(double value);
 
+/// Seconds, metres and counts as the page shows them; "-" for NaN.
+[[nodiscard]] std::string milliseconds(double value_s);
+[[nodiscard]] std::string microseconds(double value_s);
+/// To a tenth below 10 mm, else whole.
+[[nodiscard]] std::string millimetres(double value_m);
+
 /// Lines of "| a | b |" under a head.
 class MarkdownTable {
  public:

@@ -27,8 +27,8 @@ struct OurPlan {
 void measure_ours(Stage& stage, const std::string& workload, const OurMargins& margins, const OurPlan& plan,
                   Report& report);
 
-/// Ours and `letter` in turns on the same points, as rows of group "beside the letter".
-void measure_beside_letter(Stage& stage, const OurPlan& plan, Report& report);
+/// Ours and `letter` in turns on the same points, as rows of group "beside the letter, <workload>".
+void measure_beside_letter(Stage& stage, const std::string& workload, const OurPlan& plan, Report& report);
 
 /// Frames that no scene gives, with and without a budget, as rows of group "adversarial": every pixel at random,
 /// nothing measured at all, and points at the cameras.

@@ -65,9 +65,9 @@ void draw_cameras(const std::string& folder, const Report& report) {
                             "maximum of the cameras' scans", "scan of the arm box's cloud", "nanoflann, cell"});
   save(folder, "cameras",
        {{"All new frames and nine points", "cameras", "ms (median)", true, true,
-         series(report, "side by side", cycle, column("cameras", 1), column("cycle_median_s", 1e3))},
+         series(report, "side by side, W", cycle, column("cameras", 1), column("cycle_median_s", 1e3))},
         {"Nine points alone", "cameras", "ms (median)", true, true,
-         series(report, "side by side", query, column("cameras", 1), column("nine_median_s", 1e3))}});
+         series(report, "side by side, W", query, column("cameras", 1), column("nine_median_s", 1e3))}});
 }
 
 void draw_sweeps(const std::string& folder, const Report& report) {
@@ -99,7 +99,7 @@ void draw_accuracy(const std::string& folder, const Report& report) {
       return row["cameras"] == 2 && found != row.texts.end() ? found->second : std::string();
     };
     report::Plot plot{title, "ms for all new frames and nine points (median)", y_label, true, true, {}};
-    plot.series = series(report, "side by side", family, column("cycle_median_s", 1e3), error_mm(key));
+    plot.series = series(report, "side by side, W", family, column("cycle_median_s", 1e3), error_mm(key));
     for (report::Series& s : plot.series) {
       s.joined = false;
     }

@@ -89,7 +89,7 @@ void special(Stage& stage, Peer& peer, int set, const std::vector<Eigen::Vector3
 
 }  // namespace
 
-void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string& group, const SideBySidePlan& plan,
+void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string& workload, const SideBySidePlan& plan,
                           Report& report) {
   PeerSetting our_setting = stage.setting();
   our_setting.sensor.lateral_px = 1;
@@ -119,7 +119,7 @@ void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string&
     special(stage, *peer, set, stage.deep_points(set), row.deep_s);
   }
 
-  Record record{group, kind.name, {}, {{"family", kind.family}}};
+  Record record{"side by side, " + workload, kind.name, {}, {{"family", kind.family}}};
   record.numbers["cameras"] = stage.cameras();
   record.numbers["counts_occluded"] = kind.counts_occluded ? 1 : 0;
   record.numbers["carves"] = kind.carves ? 1 : 0;

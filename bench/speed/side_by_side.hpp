@@ -12,10 +12,10 @@ struct SideBySidePlan {
   double limit_s = 8;  ///< wall clock a row; three frame sets in any case
 };
 
-/// Runs the peer and adds its row to group "side by side" (or "side by side, noise"). For every frame set: the peer
+/// Runs the peer and adds its row to group "side by side, <workload>". For every frame set: the peer
 /// takes it and answers nine points at 16 sub-steps, or at the two that the oracle knows where that takes too long;
 /// then ours does a whole cycle. At most three frame sets when the peer needs over a second for one.
-void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string& group, const SideBySidePlan& plan,
+void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string& workload, const SideBySidePlan& plan,
                           Report& report);
 
 }  // namespace depthgrid::bench
