@@ -41,15 +41,17 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   const double part_u = at.x_px - u;
   const double part_v = at.y_px - v;
   const double slack = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
-  const double cosine = x.z() / x.norm();
-  const double slant = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  // A depth h beyond x at lateral distance s is within the slack if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
+  const double tangent = std::hypot(x.x(), x.y()) / x.z();
+  // Beside x at lateral distance s begins a pixel whose border has the tangent t to the optical axis; a depth h beyond x is
+  // within the slack there if (s + t h)^2 + h^2 <= slack^2, so if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2, c^2 (1 + t^2) = 1.
   const auto reaches = [&](int i, int j, double side_m) {
     if (side_m > slack || !c.contains(i, j)) {
       return false;
     }
-    const double rest = slack * slack - side_m * side_m * cosine * cosine;
-    const double z_m = x.z() + std::max(0.0, cosine * std::sqrt(rest) - side_m * slant * cosine);
+    const double t = tangent + side_m / x.z();
+    const double square = 1 / (1 + t * t);
+    const double rest = slack * slack - side_m * side_m * square;
+    const double z_m = x.z() + std::max(0.0, std::sqrt(square * rest) - side_m * t * square);
     const auto free_m = static_cast<double>(camera.view->free_m().at(i, j));
     if (z_m < free_m) {
       return false;
@@ -194,9 +196,12 @@ bool Descent::is_free(const Cube& cube) noexcept {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
     const Eigen::Vector3d c = camera.to_camera(centre);
     const double reach_m = camera.has_reach ? camera.reach(c) + largest_rate_ * half_diagonal_m : 0.0;
-    ++count_.ball_tests;
-    if (!meets_not_free(camera, camera.space, c, half_diagonal_m + reach_m)) {
-      return true;
+    // Most balls that meet not-free space do so in one of the pixels nearest to their centre.
+    if (camera.space.to_view || !blocks(camera, centre, half_diagonal_m)) {
+      ++count_.ball_tests;
+      if (!meets_not_free(camera, camera.space, c, half_diagonal_m + reach_m)) {
+        return true;
+      }
     }
     uncovered = uncovered && (camera.has_reach ? !covers_some(camera, c, half_diagonal_m)
                                                : !meets_not_free(camera, camera.coverage, c, half_diagonal_m));
