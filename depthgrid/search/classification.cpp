@@ -4,37 +4,122 @@
 #include <cmath>
 #include <limits>
 
+#include "depthgrid/search/search.hpp"
+
 namespace depthgrid::search {
 namespace {
 
-/// Pixels to each side that are looked at at most.
-constexpr double kWidestLook = 24;
+/// Pixels that a wide look reads at most; the first of them say something already.
+constexpr int kMostPixels = 4096;
 
 /// What one camera says of a point.
 struct Look {
   bool measured = false;
   bool occluded = false;
   bool unmeasured = false;
+
+  [[nodiscard]] bool anything() const noexcept { return measured || occluded || unmeasured; }
 };
 
-/// Pixels around (u, v) from the filter's reach on, up to window_px.
-Look look(const View& view, const SensorMargin& margin, int u, int v, double z_m, double slack_m,
-          int window_px) noexcept {
-  Look result;
-  result.unmeasured =
-      u < window_px || v < window_px || u + window_px >= view.width_px() || v + window_px >= view.height_px();
-  for (int j = std::max(0, v - window_px); j <= std::min(view.height_px() - 1, v + window_px); ++j) {
-    for (int i = std::max(0, u - window_px); i <= std::min(view.width_px() - 1, u + window_px); ++i) {
-      const double depth_m = static_cast<double>(view.measured_m().at(i, j));
-      if (!(depth_m > 0)) {
-        result.unmeasured = true;
-      } else if (std::abs(z_m - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {
-        result.measured = true;
-      } else if (z_m > depth_m) {
-        result.occluded = true;
+/// Pixels, inclusive.
+struct Window {
+  int u0, v0, u1, v1;
+
+  [[nodiscard]] Window grown(int by_px) const noexcept { return {u0 - by_px, v0 - by_px, u1 + by_px, v1 + by_px}; }
+  [[nodiscard]] Window clipped_to(const Window& other) const noexcept {
+    return {std::max(u0, other.u0), std::max(v0, other.v0), std::min(u1, other.u1), std::min(v1, other.v1)};
+  }
+};
+
+/// One camera, and a point in its frame that it looks at.
+struct Sight {
+  const View& view;
+  const SensorMargin& margin;
+  const PinholeCamera& pinhole;
+  Eigen::Vector3d p;
+  double slack_m;  ///< resolution and reach
+
+  [[nodiscard]] Window image() const noexcept { return {0, 0, view.width_px() - 1, view.height_px() - 1}; }
+
+  /// What the readings in these pixels say, added to what is known. The window may leave the image.
+  void read(const Window& pixels, Look& known) const noexcept {
+    const Window inside = pixels.clipped_to(image());
+    known.unmeasured = known.unmeasured || inside.u0 > pixels.u0 || inside.v0 > pixels.v0 || inside.u1 < pixels.u1 ||
+                       inside.v1 < pixels.v1;
+    for (int v = inside.v0; v <= inside.v1; ++v) {
+      for (int u = inside.u0; u <= inside.u1; ++u) {
+        const auto depth_m = static_cast<double>(view.measured_m().at(u, v));
+        if (!(depth_m > 0)) {
+          known.unmeasured = true;
+        } else if (std::abs(p.z() - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {
+          known.measured = true;
+        } else if (p.z() > depth_m) {
+          known.occluded = true;
+        }
       }
     }
   }
+
+  /// The same for those pixels of a block of 4 * 2^level a side that do not free what is within slack of the point; the
+  /// pyramid says which blocks have none. Stops at a measured one, which nothing outranks.
+  void read_block(std::size_t level, int i, int j, const Window& window, int& pixels_left, Look& known) const noexcept {
+    const PyramidLevel& texels = view.levels()[level];
+    const auto texel =
+        static_cast<std::size_t>(4 * j) * static_cast<std::size_t>(texels.width) + static_cast<std::size_t>(4 * i);
+    if (known.measured || pixels_left <= 0 ||
+        static_cast<double>(view.minima_m()[texels.offset + texel]) > p.z() + slack_m) {
+      return;
+    }
+    if (level == 0) {
+      const Window block{4 * i, 4 * j, 4 * i + 3, 4 * j + 3};
+      const Window reached = block.clipped_to(window).grown(margin.lateral_px);
+      pixels_left -= (reached.u1 - reached.u0 + 1) * (reached.v1 - reached.v0 + 1);
+      read(reached, known);
+      return;
+    }
+    read_blocks(
+        level - 1,
+        window.clipped_to({(4 * i) << level, (4 * j) << level, ((4 * i + 4) << level) - 1, ((4 * j + 4) << level) - 1}),
+        pixels_left, known);
+  }
+
+  void read_blocks(std::size_t level, const Window& window, int& pixels_left, Look& known) const noexcept {
+    for (int j = window.v0 >> (level + 2); j <= window.v1 >> (level + 2); ++j) {
+      for (int i = window.u0 >> (level + 2); i <= window.u1 >> (level + 2); ++i) {
+        read_block(level, i, j, window, pixels_left, known);
+      }
+    }
+  }
+};
+
+/// All pixels that a ball before the camera's plane projects to, or more; may leave the image.
+Window window_of(const PinholeCamera& c, const Eigen::Vector3d& p, double radius_m) noexcept {
+  const auto bound = [&](double x, double away_m, double f_px, double c_px) {
+    const double end = x + away_m;
+    const double px = c_px + f_px * end / (p.z() + (end * away_m > 0 ? -radius_m : radius_m));
+    return static_cast<int>(std::floor(std::clamp(px, -1e6, 1e6)));
+  };
+  return {bound(p.x(), -radius_m, c.fx_px, c.cx_px), bound(p.y(), -radius_m, c.fy_px, c.cy_px),
+          bound(p.x(), radius_m, c.fx_px, c.cx_px), bound(p.y(), radius_m, c.fy_px, c.cy_px)};
+}
+
+/// What keeps the camera from freeing the point though nothing in its own pixels does: something beside it.
+Look look_around(const Sight& sight, double near_m) noexcept {
+  Look result;
+  if (sight.p.z() - sight.slack_m <= near_m) {
+    result.unmeasured = true;
+    return result;
+  }
+  const Window window = window_of(sight.pinhole, sight.p, sight.slack_m);
+  const Window inside = window.clipped_to(sight.image());
+  result.unmeasured = inside.u0 > window.u0 || inside.v0 > window.v0 || inside.u1 < window.u1 || inside.v1 < window.v1;
+  std::size_t level = 0;
+  while (level + 1 < sight.view.levels().size() &&
+         std::max(inside.u1 - inside.u0, inside.v1 - inside.v0) >= 16 << level) {
+    ++level;
+  }
+  int pixels_left = kMostPixels;
+  sight.read_blocks(level, inside, pixels_left, result);
   return result;
 }
 
@@ -45,6 +130,7 @@ Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world
   double nearest_camera_m = std::numeric_limits<double>::infinity();
   bool occluded = false;
   bool unmeasured = false;
+  bool looks = false;
   for (std::size_t k = 0; k < snapshot.camera_count(); ++k) {
     const View& view = snapshot.view(k);
     const RigCamera& camera = snapshot.camera(k);
@@ -64,20 +150,16 @@ Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world
     const PoseMargin& e = snapshot.pose_margin(k);
     const double range_m = x.norm();
     const double slack_m =
-        snapshot.settings().resolution_m + e.translation_m + e.time_m + e.rotation_rad * range_m;
-    const SensorMargin& margin = snapshot.settings().margins[k].sensor;
+        snapshot.settings().resolution_m + e.translation_m + e.time_m + e.rotation_rad * range_m + kRounding;
+    const Sight sight{view, snapshot.settings().margins[k].sensor, camera.intrinsics, x, slack_m};
     const auto u = static_cast<int>(p.x_px);
     const auto v = static_cast<int>(p.y_px);
-    Look seen = look(view, margin, u, v, p.depth_m, slack_m, margin.lateral_px);
-    if (!seen.measured && !seen.occluded && !seen.unmeasured) {
-      // What keeps the camera from freeing the point stands beside it, within slack and reach.
-      const double aside_px = slack_m * std::max(camera.intrinsics.fx_px, camera.intrinsics.fy_px) / p.depth_m;
-      const int window_px = margin.lateral_px + 1 + static_cast<int>(std::min(aside_px, kWidestLook));
-      seen = look(view, margin, u, v, p.depth_m, slack_m, window_px);
-      seen.unmeasured = seen.unmeasured || p.depth_m - slack_m <= camera.rule.near_m;
-      // Beyond the widest look: the camera looks there and does not free it, so something is before it.
-      seen.occluded = seen.occluded || (!seen.measured && !seen.unmeasured);
+    Look seen;
+    sight.read(Window{u, v, u, v}.grown(sight.margin.lateral_px), seen);
+    if (!seen.anything()) {
+      seen = look_around(sight, camera.rule.near_m);
     }
+    looks = true;
     if (seen.measured && range_m < nearest_camera_m) {
       nearest_camera_m = range_m;
       result.camera = static_cast<std::uint16_t>(k);
@@ -91,6 +173,8 @@ Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world
     result.state = ProximityState::occluded;
   } else if (unmeasured) {
     result.state = ProximityState::unmeasured;
+  } else if (looks) {
+    result.state = ProximityState::occluded;  // a camera looks there, and none has seen it free
   }
   return result;
 }
