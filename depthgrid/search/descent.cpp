@@ -79,15 +79,12 @@ Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier,
   for (std::size_t k = 0; k < query_.camera_count; ++k) {
     const PoseMargin& e = snapshot.pose_margin(k);
     const double reach_m = e.translation_m + e.time_m;
-    has_reach_ = has_reach_ || reach_m > 0 || e.rotation_rad > 0;
     least_reach_m_ = std::min(least_reach_m_, reach_m);
     largest_rate_ = std::max(largest_rate_, e.rotation_rad);
   }
   // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and reach of each
-  // of its points. Without reach leaves are smaller, because then boxes free nearly all of what balls free, and sooner; e_k
-  // varies by less than rate * diagonal within a cube.
-  const double leaf_diagonal_m =
-      has_reach_ ? (settings_.resolution_m - 2e-5) / (1 + largest_rate_) : settings_.resolution_m / kSqrt3;
+  // of its points. e_k varies by less than rate * diagonal within a cube.
+  const double leaf_diagonal_m = (settings_.resolution_m - 2e-5) / (1 + largest_rate_);
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
 }
 

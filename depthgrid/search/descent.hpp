@@ -92,7 +92,6 @@ class Descent {
   Cube root_{};
   static constexpr std::size_t kLevels = 64;
   std::array<float, kLevels> half_m_{};
-  bool has_reach_ = false;   ///< of some camera
   double largest_rate_ = 0;  ///< of the cameras' reach with range
   double leaf_half_m_ = 0;
   double least_reach_m_ = 0;
