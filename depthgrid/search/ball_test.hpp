@@ -13,7 +13,8 @@ namespace depthgrid::search {
 [[nodiscard]] bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Vector3d& p_camera,
                                   double radius_m) noexcept;
 
-/// False only if the camera covers no point of the ball: its view from the end of the blind zone on, whatever it measured.
+/// False only if the camera covers no point of the ball: its view from the end of the blind zone on, whatever it
+/// measured.
 [[nodiscard]] bool covers_some(const LocalCamera& camera, const Eigen::Vector3d& p_camera, double radius_m) noexcept;
 
 }  // namespace depthgrid::search

@@ -36,7 +36,8 @@ struct Boxes {
   V half_diagonal;
 };
 
-/// Bounds of the boxes in a camera's frame, a little more than rounding takes; grown by the camera's reach if asked for.
+/// Bounds of the boxes in a camera's frame, a little more than rounding takes; grown by the camera's reach if asked
+/// for.
 struct Bounds {
   V x_low, x_high, y_low, y_high, z_low, z_high;
 };
@@ -54,8 +55,8 @@ HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes, bool 
   const V z = hn::Add(weighted(camera.rotation + 6, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[2]));
   V grown = hn::Set(d, camera.guard_m);
   if (camera.has_reach && with_reach) {
-    const V range = hn::Add(hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))),
-                            boxes.half_diagonal);
+    const V range =
+        hn::Add(hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))), boxes.half_diagonal);
     const V reach = hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range));
     grown = hn::Add(grown, hn::Mul(reach, hn::Set(d, 1.00001F)));
   }
@@ -154,8 +155,8 @@ HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, 
   return hn::And(inside, hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m)));
 }
 
-/// Lanes in whose every pixel the box is free or lies in the robot's island. Pixels of both kinds lie side by side where
-/// one link is seen before another.
+/// Lanes in whose every pixel the box is free or lies in the robot's island. Pixels of both kinds lie side by side
+/// where one link is seen before another.
 HWY_INLINE M free_or_island(const LocalCamera& camera, M inside, const Footprint& at, V z_low, V z_high) {
   const Floats d;
   const View& view = *camera.view;
@@ -163,7 +164,8 @@ HWY_INLINE M free_or_island(const LocalCamera& camera, M inside, const Footprint
   if (at.level == 0) {
     M result = inside;
     for (int n = 0; n < at.side * at.side; ++n) {
-      const I corner = hn::Add(at.row[static_cast<std::size_t>(n / at.side)], at.column[static_cast<std::size_t>(n % at.side)]);
+      const I corner =
+          hn::Add(at.row[static_cast<std::size_t>(n / at.side)], at.column[static_cast<std::size_t>(n % at.side)]);
       const V near_m = hn::GatherIndex(d, view.island_near_m().data(), corner);
       const V far_m = hn::GatherIndex(d, view.island_far_m().data(), corner);
       const V free_m = hn::GatherIndex(d, camera.free_m, corner);
@@ -195,9 +197,9 @@ HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b) {
   const V zero = hn::Zero(d);
   const M in_front = hn::Gt(b.z_low, hn::Set(d, 1e-6F));
   const Rectangle r = project(camera, b, b.z_low, b.z_high);
-  const M inside = hn::And(
-      hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
-      hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
+  const M inside =
+      hn::And(hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
+              hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
   return freed(camera, inside, r, b.z_low, b.z_high);
 }
 
@@ -210,10 +212,9 @@ HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bo
   const V z_high = hn::Min(b.z_high, hn::Set(d, clip.high_m));
   const V tiny = hn::Set(d, 1e-6F);
   const Rectangle whole = project(camera, b, hn::Max(z_low, tiny), hn::Max(z_high, tiny));
-  const M empty = hn::Or(
-      hn::Or(hn::Or(hn::Lt(z_high, z_low), hn::Lt(z_high, tiny)),
-             hn::Or(hn::Lt(whole.u_high, zero), hn::Ge(whole.u_low, hn::Set(d, camera.width)))),
-      hn::Or(hn::Lt(whole.v_high, zero), hn::Ge(whole.v_low, hn::Set(d, camera.height))));
+  const M empty = hn::Or(hn::Or(hn::Or(hn::Lt(z_high, z_low), hn::Lt(z_high, tiny)),
+                                hn::Or(hn::Lt(whole.u_high, zero), hn::Ge(whole.u_low, hn::Set(d, camera.width)))),
+                         hn::Or(hn::Lt(whole.v_high, zero), hn::Ge(whole.v_low, hn::Set(d, camera.height))));
   if (hn::AllTrue(d, empty) || camera.has_reach) {
     return empty;
   }
@@ -244,9 +245,7 @@ HWY_INLINE M outside_view(const CubeQuery& query, const LocalCamera& camera, con
                        beyond(b.y_low, b.y_high, -camera.cy / camera.fy, (camera.height - camera.cy) / camera.fy)));
 }
 
-HWY_INLINE V length(V x, V y, V z) {
-  return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
-}
+HWY_INLINE V length(V x, V y, V z) { return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))); }
 
 HWY_INLINE V clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
 
@@ -283,9 +282,9 @@ HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
     // The ball around the box: another point of the axis may be nearer to the box than the one nearest to its centre.
     result.distance = hn::Max(hn::Sub(to_centre, boxes.half_diagonal), zero);
   } else {
-    result.distance = length(hn::Max(hn::Sub(hn::Abs(x), boxes.half_x), zero),
-                             hn::Max(hn::Sub(hn::Abs(y), boxes.half_y), zero),
-                             hn::Max(hn::Sub(hn::Abs(z), boxes.half_z), zero));
+    result.distance =
+        length(hn::Max(hn::Sub(hn::Abs(x), boxes.half_x), zero), hn::Max(hn::Sub(hn::Abs(y), boxes.half_y), zero),
+               hn::Max(hn::Sub(hn::Abs(z), boxes.half_z), zero));
   }
   const V share = hn::Div(result.distance, hn::Max(to_centre, hn::Set(d, 1e-9F)));
   result.near_x = hn::Add(px, hn::Mul(x, share));
@@ -295,9 +294,9 @@ HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
 }
 
 /// Lanes around whose point a camera may have not-free space within slack and reach: the point lies out of its view, or
-/// its pixel or one of the three nearest to it begins to be not free near enough. With t the tangent of the angle between
-/// ray and optical axis, c its cosine and s the lateral distance to the pixel, a depth h beyond the point is near enough
-/// on the worst side if (s + t h)^2 + h^2 <= slack^2, which is h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
+/// its pixel or one of the three nearest to it begins to be not free near enough. With t the tangent of the angle
+/// between ray and optical axis, c its cosine and s the lateral distance to the pixel, a depth h beyond the point is
+/// near enough on the worst side if (s + t h)^2 + h^2 <= slack^2, which is h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
 HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
   const Floats d;
   const Ints di;
@@ -501,12 +500,13 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
       child_of[lane] = children.count;
       children.touching[static_cast<std::size_t>(children.count)] = 0;
       const std::size_t at = first + static_cast<std::size_t>(lane);
-      children.cubes[static_cast<std::size_t>(children.count++)] = {xs[at], ys[at],               zs[at],
-                                                                    1e30F,  parents[0].level + 1, 0};
+      children.cubes[static_cast<std::size_t>(children.count++)] = {xs[at], ys[at], zs[at], 1e30F, parents[0].level + 1,
+                                                                    0};
     }
     for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
-      const std::uint32_t asked = ((parents[0].primitives >> i) & 1U) * 0xFFU | ((second.primitives >> i) & 1U) * second_lanes;
+      const std::uint32_t asked =
+          ((parents[0].primitives >> i) & 1U) * 0xFFU | ((second.primitives >> i) & 1U) * second_lanes;
       const std::uint32_t mine = nearer[i] & open_bits & (asked >> first);
       if (mine == 0) {
         continue;

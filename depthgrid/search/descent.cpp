@@ -42,8 +42,9 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   const double part_v = at.y_px - v;
   const double slack = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
   const double tangent = std::hypot(x.x(), x.y()) / x.z();
-  // Beside x at lateral distance s begins a pixel whose border has the tangent t to the optical axis; a depth h beyond x is
-  // within the slack there if (s + t h)^2 + h^2 <= slack^2, so if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2, c^2 (1 + t^2) = 1.
+  // Beside x at lateral distance s begins a pixel whose border has the tangent t to the optical axis; a depth h beyond
+  // x is within the slack there if (s + t h)^2 + h^2 <= slack^2, so if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2, c^2 (1
+  // + t^2) = 1.
   const auto reaches = [&](int i, int j, double side_m) {
     if (side_m > slack || !c.contains(i, j)) {
       return false;
@@ -82,8 +83,8 @@ Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier,
     least_reach_m_ = std::min(least_reach_m_, reach_m);
     largest_rate_ = std::max(largest_rate_, e.rotation_rad);
   }
-  // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and reach of each
-  // of its points. e_k varies by less than rate * diagonal within a cube.
+  // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and reach of
+  // each of its points. e_k varies by less than rate * diagonal within a cube.
   const double leaf_diagonal_m = (settings_.resolution_m - 2e-5) / (1 + largest_rate_);
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
 }
@@ -133,7 +134,8 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
     space_low_ = box->low_world - origin_world_;
     space_high_ = box->high_world - origin_world_;
     const Eigen::Vector3d middle = middle_world - origin_world_;
-    query_.boxed = ((space_low_ - middle).array() > -extent_m).any() || ((space_high_ - middle).array() < extent_m).any();
+    query_.boxed =
+        ((space_low_ - middle).array() > -extent_m).any() || ((space_high_ - middle).array() < extent_m).any();
     for (int i = 0; i < 3; ++i) {
       query_.box_low[i] = rounded_down(space_low_(i));
       query_.box_high[i] = rounded_up(space_high_(i));

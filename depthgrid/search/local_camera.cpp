@@ -45,8 +45,9 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.guard_m = up(16 * kEpsilon * largest_m);
   const PinholeCamera& pinhole = local.pinhole;
   // A coordinate inside the image is f x / z + c with |f x / z| <= size + |c|.
-  local.guard_px = up(16 * kEpsilon * (pinhole.width_px + pinhole.height_px + 2 * std::abs(pinhole.cx_px) +
-                                       2 * std::abs(pinhole.cy_px)));
+  local.guard_px =
+      up(16 * kEpsilon *
+         (pinhole.width_px + pinhole.height_px + 2 * std::abs(pinhole.cx_px) + 2 * std::abs(pinhole.cy_px)));
   local.fx = static_cast<float>(pinhole.fx_px);
   local.fy = static_cast<float>(pinhole.fy_px);
   local.cx = static_cast<float>(pinhole.cx_px);
@@ -54,8 +55,8 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.width = static_cast<float>(pinhole.width_px);
   local.height = static_cast<float>(pinhole.height_px);
   local.blind_m = local.near_m > 0 ? up(local.near_m) : 0.0F;
-  local.has_reach = local.pose_margin.translation_m > 0 || local.pose_margin.rotation_rad > 0 ||
-                    local.pose_margin.time_m > 0;
+  local.has_reach =
+      local.pose_margin.translation_m > 0 || local.pose_margin.rotation_rad > 0 || local.pose_margin.time_m > 0;
   local.reach_m = up(local.pose_margin.translation_m + local.pose_margin.time_m);
   local.reach_per_m = up(local.pose_margin.rotation_rad);
   if (!local.has_reach) {

@@ -20,8 +20,8 @@ struct Clip {
   float high_m = 0;      ///< d_max_m rounded up
 };
 
-/// The image itself (index 0) or a level of its pyramid, as a rectangle of pixels is looked up in it: at its first pixel
-/// and `back` texels before its last, both shifted.
+/// The image itself (index 0) or a level of its pyramid, as a rectangle of pixels is looked up in it: at its first
+/// pixel and `back` texels before its last, both shifted.
 struct Texels {
   std::uint32_t offset = 0;  ///< into the pyramid; 0 for the image
   std::int32_t width = 0;
@@ -39,9 +39,9 @@ struct LocalCamera {
   float guard_px;  ///< more than the rounding of a projection inside the image
   float fx, fy, cx, cy;
   float width, height;
-  float blind_m;       ///< nothing up to this depth is free (a little above the blind zone's end)
-  float reach_m;       ///< e at the camera's centre
-  float reach_per_m;   ///< growth of e with the range
+  float blind_m;      ///< nothing up to this depth is free (a little above the blind zone's end)
+  float reach_m;      ///< e at the camera's centre
+  float reach_per_m;  ///< growth of e with the range
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
   std::array<Texels, kMostTexels> texels{};

@@ -1,10 +1,10 @@
 #include "depthgrid/search/search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <array>
 
 #include "depthgrid/search/classification.hpp"
 #include "depthgrid/search/descent.hpp"
@@ -29,10 +29,10 @@ bool is_valid(const Primitive& primitive) noexcept {
 struct Search::Plan {
   std::size_t answer = 0;  ///< index in the call
   Primitive primitive;
-  Border border;                  ///< of W, from the end of the axis that is nearer to it
-  Eigen::Vector3d border_axis;    ///< that end
-  double limit_m = 0;             ///< from the axis
-  bool border_bounds = false;     ///< the border counts as obstacle and is nearer than rho
+  Border border;                ///< of W, from the end of the axis that is nearer to it
+  Eigen::Vector3d border_axis;  ///< that end
+  double limit_m = 0;           ///< from the axis
+  bool border_bounds = false;   ///< the border counts as obstacle and is nearer than rho
 };
 
 struct Search::State {
@@ -163,9 +163,9 @@ void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> pr
   Allowance allowance;
   allowance.timed = budget.time_s > 0;
   if (allowance.timed) {
-    allowance.deadline = std::chrono::steady_clock::now() +
-                         std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                             std::chrono::duration<double>(std::min(budget.time_s, 1e6)));
+    allowance.deadline =
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                               std::chrono::duration<double>(std::min(budget.time_s, 1e6)));
   }
   const std::size_t both = std::min(primitives.size(), answers.size());
   std::size_t next = 0;

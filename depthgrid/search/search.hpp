@@ -4,11 +4,11 @@
 //   O      = intersection over k of { x in W : some y in N_k minus R_k has |x - y| <= e_k(x) }
 //   D(P)   = distance from P to O, capped at rho
 //
-// Answers never exceed D(P). Tight to r: the nearest point w of an answer below rho has |w - P| = answer (to 1e-5 m) and
-// lies within e_k(w) + r of N_k minus R_k for every camera k.
+// Answers never exceed D(P). Tight to r: the nearest point w of an answer below rho has |w - P| = answer (to 1e-5 m)
+// and lies within e_k(w) + r of N_k minus R_k for every camera k.
 //
-// A best-first search over the cubes of an octree around the primitive: a cube is dropped when one camera alone frees it
-// with everything that errors of pose and time may bring into it.
+// A best-first search over the cubes of an octree around the primitive: a cube is dropped when one camera alone frees
+// it with everything that errors of pose and time may bring into it.
 #pragma once
 
 #include <Eigen/Core>

@@ -13,8 +13,8 @@
 namespace depthgrid::search {
 
 /// Overlapping extrema of an image: texel (i, j) of level L covers the pixels [i 2^L, (i + 4) 2^L) x
-/// [j 2^L, (j + 4) 2^L) of the image. So a rectangle of pixels whose last and first texel columns (pixel >> L) differ by
-/// at most 7, and its rows likewise, is covered by four texels, each side with less than 2^L pixels too many.
+/// [j 2^L, (j + 4) 2^L) of the image. So a rectangle of pixels whose last and first texel columns (pixel >> L) differ
+/// by at most 7, and its rows likewise, is covered by four texels, each side with less than 2^L pixels too many.
 struct PyramidLevel {
   std::uint32_t offset = 0;  ///< of its first texel in the pyramid's buffer
   std::int32_t width = 0;
@@ -35,8 +35,8 @@ class View {
   View(const RigCamera& camera, const CameraMargins& margins, const Policies& policies);
 
   /// Takes a frame: normalises, subtracts the margin, applies the robot, the minimum filter and builds the pyramid.
-  /// False when the frame is unusable (no data, another size or depth scale than the camera's, rows that overlap, half a
-  /// robot view); then nothing is free.
+  /// False when the frame is unusable (no data, another size or depth scale than the camera's, rows that overlap, half
+  /// a robot view); then nothing is free.
   bool update(const Frame& frame, const Pose& T_world_camera) noexcept;
 
   [[nodiscard]] int width_px() const noexcept { return free_m_.width_px(); }

@@ -20,9 +20,9 @@ enum class UpdateResult : std::uint8_t {
   dropped,   ///< held snapshots occupy every buffer of this camera: the frame before stays the newest
 };
 
-/// Holds a few prepared images a camera. Neither update() nor snapshot() locks, allocates or throws; both are lock-free.
-/// update(): one thread at a time for each camera; different cameras may update at the same time, and any number of
-/// threads may take snapshots meanwhile.
+/// Holds a few prepared images a camera. Neither update() nor snapshot() locks, allocates or throws; both are
+/// lock-free. update(): one thread at a time for each camera; different cameras may update at the same time, and any
+/// number of threads may take snapshots meanwhile.
 class ViewStore {
  public:
   /// `held_snapshots`: how many different snapshots may be held at once before a camera's next frame is dropped (1-13);
