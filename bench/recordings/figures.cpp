@@ -28,6 +28,8 @@ std::string number(double value, int decimals) {
 
 std::string share(double part, double whole) { return whole == 0 ? "-" : number(100 * part / whole, 1) + " %"; }
 
+std::string percent(double part, double whole) { return whole == 0 ? "-" : number(100 * part / whole, 2) + " %"; }
+
 std::string millimetres(double value_m) {
   const std::string text = number(1e3 * value_m, 0);
   return text == "-" || value_m <= 0 ? (text == "-0" ? "0" : text) : "+" + text;

@@ -13,6 +13,8 @@ namespace depthgrid::bench {
 [[nodiscard]] std::string number(double value, int decimals);
 /// Part of a whole as "12.3 %"; "-" when the whole is 0.
 [[nodiscard]] std::string share(double part, double whole);
+/// The same with two decimals, for rare things.
+[[nodiscard]] std::string percent(double part, double whole);
 /// Metres as whole millimetres with their sign.
 [[nodiscard]] std::string millimetres(double value_m);
 
