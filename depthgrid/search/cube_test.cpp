@@ -418,8 +418,9 @@ HWY_INLINE M cut_to_space(const CubeQuery& query, Boxes& boxes) {
     const V to = hn::Min(hn::Add(centre, half_side), hn::Set(d, high));
     inside = hn::And(inside, hn::Le(from, to));
     centre = hn::Mul(hn::Add(from, to), hn::Set(d, 0.5F));
-    // A little larger: the centre has been rounded.
-    half_side = hn::Add(hn::Mul(hn::Sub(to, from), hn::Set(d, 0.5F)), hn::Set(d, 1e-6F));
+    // A little larger: the centre has been rounded. Never negative: what projects has to be a rectangle even where the
+    // box lies outside W and its lane is not wanted.
+    half_side = hn::Add(hn::Max(hn::Mul(hn::Sub(to, from), hn::Set(d, 0.5F)), zero), hn::Set(d, 1e-6F));
   };
   cut(boxes.x, boxes.half_x, query.box_low[0], query.box_high[0]);
   cut(boxes.y, boxes.half_y, query.box_low[1], query.box_high[1]);
