@@ -72,6 +72,7 @@ void write_json(const std::string& file, const Report& report) {
   rapidjson::OStreamWrapper stream(out);
   Writer json(stream);
   json.SetIndent(' ', 1);
+  json.SetMaxDecimalPlaces(9);  // nanoseconds, nanometres
   json.SetFormatOptions(rapidjson::kFormatSingleLineArray);
   json.StartObject();
   json.Key("about");

@@ -33,7 +33,8 @@ struct Report {
                               const std::map<std::string, double>& numbers = {}) const;
 };
 
-/// Throws Error when the file cannot be written. Numbers that are not finite become null.
+/// Throws Error when the file cannot be written. Numbers keep nine decimals; those that
+/// are not finite become null.
 void write_json(const std::string& file, const Report& report);
 /// Throws Error when the file cannot be read or is no such report.
 [[nodiscard]] Report read_json(const std::string& file);
