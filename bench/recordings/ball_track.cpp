@@ -27,8 +27,22 @@ BallTrack load_ball_track(const std::filesystem::path& file) {
       track.centre_world[frame["frame"].GetInt()] = {centre[0].GetDouble(), centre[1].GetDouble(),
                                                      centre[2].GetDouble()};
     }
+    for (const auto& seen : frame["seen"].GetObject()) {
+      const auto& own = seen.value["centre_world_m"];
+      track.fits[frame["frame"].GetInt()][seen.name.GetString()] = {
+          {own[0].GetDouble(), own[1].GetDouble(), own[2].GetDouble()}, seen.value["fitted_radius_m"].GetDouble()};
+    }
   }
   return track;
+}
+
+std::optional<BallFit> BallTrack::fit(int frame, const std::string& camera) const {
+  const auto of_frame = fits.find(frame);
+  if (of_frame == fits.end()) {
+    return std::nullopt;
+  }
+  const auto found = of_frame->second.find(camera);
+  return found == of_frame->second.end() ? std::nullopt : std::optional<BallFit>(found->second);
 }
 
 std::filesystem::path recording_folder(const std::string& name) {

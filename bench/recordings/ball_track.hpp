@@ -4,12 +4,23 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string>
 
 namespace depthgrid::bench {
 
+/// The ball as one camera alone sees it.
+struct BallFit {
+  Eigen::Vector3d centre_world;
+  double radius_m = 0;
+};
+
 struct BallTrack {
   double radius_m = 0;
-  std::map<int, Eigen::Vector3d> centre_world;  ///< by frame number
+  std::map<int, Eigen::Vector3d> centre_world;         ///< by frame number
+  std::map<int, std::map<std::string, BallFit>> fits;  ///< by frame number and camera; none where it is not seen
+
+  [[nodiscard]] std::optional<BallFit> fit(int frame, const std::string& camera) const;
 };
 
 /// Reads ball.json. Throws Error that names the file.

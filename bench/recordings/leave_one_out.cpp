@@ -74,8 +74,10 @@ std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const 
                                                const DepthImage& depth, int stride) {
   const search::Snapshot snapshot = store_.snapshot();
   const MeasurementRule& rule = left_out.rule;
+  const Eigen::Vector3d centre = left_out.T_world_camera.translation();
   std::vector<LeftOutReading> readings;
   std::vector<search::Primitive> points;
+  std::vector<search::Primitive> before;
   for (int v = stride / 2; v < depth.height_px(); v += stride) {
     for (int u = stride / 2; u < depth.width_px(); u += stride) {
       LeftOutReading reading;
@@ -94,12 +96,16 @@ std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const 
       reading.allowance_m = allowance_m(margins, settings_.v_max_m_s, p_camera.z(), p_camera.norm());
       readings.push_back(reading);
       points.push_back(search::point(reading.p_world));
+      before.push_back(search::point(reading.p_world + kProbe_m * (centre - reading.p_world).normalized()));
     }
   }
   std::vector<search::Answer> answers(points.size());
+  std::vector<search::Answer> answers_before(points.size());
   search_.distances(snapshot, points, answers);
+  search_.distances(snapshot, before, answers_before);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     readings[i].answer_m = answers[i].nearest.distance_m;
+    readings[i].before_m = answers_before[i].nearest.distance_m;
     if (!std::isfinite(readings[i].answer_m)) {
       fail("a reading of ", left_out.id, " has no distance; the cameras must stand within the box of 20 m");
     }

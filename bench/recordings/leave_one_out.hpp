@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "depthgrid/core/frame.hpp"
@@ -15,6 +16,7 @@ namespace depthgrid::bench {
 
 inline constexpr double kLeaveOneOutRho_m = 0.5;
 inline constexpr double kLeaveOneOutResolution_m = 0.005;
+inline constexpr double kProbe_m = 0.3;
 
 /// One reading of the camera that was left out.
 struct LeftOutReading {
@@ -30,6 +32,9 @@ struct LeftOutReading {
   int freed_u = 0;
   int freed_v = 0;
   double gap_m = 0;
+  /// The others' distance at the point kProbe_m before the reading on its ray, where the left-out camera sees free
+  /// space.
+  double before_m = 0;
 
   [[nodiscard]] bool violates() const { return answer_m > allowance_m; }
 };
@@ -53,6 +58,7 @@ class LeaveOneOut {
                                                   const DepthImage& depth, int stride);
 
   [[nodiscard]] std::size_t camera_count() const noexcept { return store_.rig().cameras.size(); }
+  [[nodiscard]] const std::string& id(std::size_t slot) const { return store_.rig().cameras[slot].id; }
   /// The measured image of a camera that is asked.
   [[nodiscard]] DepthImage measured(std::size_t slot) const { return store_.snapshot().view(slot).measured_m(); }
 

@@ -82,17 +82,4 @@ LeftOutCause cause_of(const LeftOutReading& reading, const DepthImage& left_out,
   return reading.gap_m >= kThrough_m ? LeftOutCause::background_seen : LeftOutCause::offset;
 }
 
-void add(LeftOutFigures& sum, const LeftOutFigures& more) {
-  sum.readings += more.readings;
-  sum.violations += more.violations;
-  sum.far_violations += more.far_violations;
-  sum.at_rho += more.at_rho;
-  sum.edge_readings += more.edge_readings;
-  for (std::size_t i = 0; i < kLeftOutCauses; ++i) {
-    sum.causes.at(i) += more.causes.at(i);
-  }
-  sum.excesses_m.insert(sum.excesses_m.end(), more.excesses_m.begin(), more.excesses_m.end());
-  sum.answers_m.insert(sum.answers_m.end(), more.answers_m.begin(), more.answers_m.end());
-}
-
 }  // namespace depthgrid::bench

@@ -3,7 +3,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,13 +42,12 @@ struct LeftOutFigures {
   std::size_t readings = 0;
   std::size_t violations = 0;
   std::size_t far_violations = 0;  ///< by more than 5 cm beyond the allowance
-  std::size_t at_rho = 0;          ///< of the violations, those with nothing within rho
+  std::size_t free_before = 0;     ///< readings before which the others report free space: the question is not idle
+  std::size_t on_floor = 0;        ///< of the violations, those within 10 cm of the floor's height
   std::size_t edge_readings = 0;   ///< all readings at an edge of their own image, to compare shares with
   std::array<std::size_t, kLeftOutCauses> causes{};
-  std::vector<double> excesses_m;  ///< answer - allowance of the violations
-  std::vector<double> answers_m;
+  std::map<std::string, std::size_t> freed_by;  ///< violations by the id of the camera that frees them by most
+  std::vector<double> excesses_m;               ///< answer - allowance of the violations
 };
-
-void add(LeftOutFigures& sum, const LeftOutFigures& more);
 
 }  // namespace depthgrid::bench

@@ -75,7 +75,8 @@ void save_left_out_picture(const std::filesystem::path& file, input::Recording& 
       }
       LeftOutFigures figures;
       std::vector<MarkedReading> marked;
-      check_left_out(search, rig.cameras[k], setting.margins[k], depth, median, kStride, figures, &marked);
+      check_left_out(search, {rig.cameras[k], setting.margins[k], depth, median, Pose::Identity()}, kStride, figures,
+                     &marked);
       const report::Rectangle tile{
           static_cast<double>(kGap_px) + static_cast<double>(k) * (kWidth_px + kGap_px),
           static_cast<double>(kHead_px) + static_cast<double>(row) * (kHeight_px + kCaption_px), kWidth_px, kHeight_px};

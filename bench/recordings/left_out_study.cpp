@@ -1,8 +1,9 @@
 #include "recordings/left_out_study.hpp"
 
 #include <array>
-#include <memory>
+#include <cmath>
 
+#include "depthgrid/core/error.hpp"
 #include "recordings/ball_track.hpp"
 #include "recordings/cameras.hpp"
 
@@ -11,12 +12,15 @@ namespace depthgrid::bench {
 namespace {
 
 constexpr double kFar_m = 0.05;
+constexpr double kFloor_m = 0.10;
 
 DepthImage measured(const RigCamera& camera, const Frame& frame) {
   DepthImage image(camera.intrinsics.width_px, camera.intrinsics.height_px);
   normalise(frame.depth, camera.rule, image);
   return image;
 }
+
+Pose floor(const Rig& rig) { return rig.T_floor_world.value_or(Pose::Identity()); }
 
 std::vector<CameraMargins> margins_of(const MarginSetting& setting, const CameraSet& cameras) {
   std::vector<CameraMargins> margins;
@@ -60,8 +64,8 @@ void check_sequence(const Rig& rig, std::span<const Frame> frames, const MarginS
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const RigCamera& camera = rig.cameras[i];
     if (i >= slots) {
-      check_left_out(others, camera, setting.margins.front(), measured(camera, frames[i]), {}, stride, figures,
-                     nullptr);
+      check_left_out(others, {camera, setting.margins.front(), measured(camera, frames[i]), {}, floor(rig)}, stride,
+                     figures, nullptr);
     }
     others.update(i % slots, frames[i], camera.T_world_camera);
   }
@@ -69,27 +73,30 @@ void check_sequence(const Rig& rig, std::span<const Frame> frames, const MarginS
 
 }  // namespace
 
-void check_left_out(LeaveOneOut& others, const RigCamera& left_out, const CameraMargins& margins,
-                    const DepthImage& depth, const DepthImage& median, int stride, LeftOutFigures& figures,
+void check_left_out(LeaveOneOut& others, const LeftOutImage& image, int stride, LeftOutFigures& figures,
                     std::vector<MarkedReading>* marked) {
   std::vector<DepthImage> freeing;
   for (std::size_t slot = 0; slot < others.camera_count(); ++slot) {
     freeing.push_back(others.measured(slot));
   }
-  for (const LeftOutReading& reading : others.check(left_out, margins, depth, stride)) {
+  for (const LeftOutReading& reading : others.check(image.camera, image.margins, image.depth, stride)) {
     ++figures.readings;
-    figures.edge_readings += at_edge(depth, reading.u, reading.v) ? 1 : 0;
-    figures.answers_m.push_back(reading.answer_m);
-    // A point that no camera frees is an obstacle, so its answer is 0: freed_by is set for every violation.
-    if (!reading.violates() || reading.freed_by < 0) {
+    figures.edge_readings += at_edge(image.depth, reading.u, reading.v) ? 1 : 0;
+    figures.free_before += reading.before_m > 0 ? 1 : 0;
+    if (!reading.violates()) {
       continue;
     }
-    const LeftOutCause cause = cause_of(reading, depth, median, freeing[static_cast<std::size_t>(reading.freed_by)]);
+    if (reading.freed_by < 0) {
+      fail("a point that no camera frees has the distance ", reading.answer_m, " m; it is an obstacle, so must have 0");
+    }
+    const auto slot = static_cast<std::size_t>(reading.freed_by);
+    const LeftOutCause cause = cause_of(reading, image.depth, image.median, freeing[slot]);
     ++figures.violations;
     ++figures.causes.at(static_cast<std::size_t>(cause));
+    ++figures.freed_by[others.id(slot)];
+    figures.on_floor += std::abs((image.T_floor_world * reading.p_world).z()) < kFloor_m ? 1 : 0;
     figures.excesses_m.push_back(reading.answer_m - reading.allowance_m);
     figures.far_violations += figures.excesses_m.back() > kFar_m ? 1 : 0;
-    figures.at_rho += reading.answer_m > kLeaveOneOutRho_m - 1e-3 ? 1 : 0;
     if (marked != nullptr) {
       marked->push_back({reading, cause});
     }
@@ -118,8 +125,8 @@ std::vector<LeftOutRow> ball_leave_one_out(input::Recording& recording, const st
       LeftOutRow row{setting.name, rig.cameras[k].id, {}};
       for (std::size_t i = 0; i < frames.size(); ++i) {
         update(others, rig, cameras, recording.read(frames[i]));
-        check_left_out(others, rig.cameras[k], setting.margins[k], images[k][i], medians[k], stride, row.figures,
-                       nullptr);
+        check_left_out(others, {rig.cameras[k], setting.margins[k], images[k][i], medians[k], floor(rig)}, stride,
+                       row.figures, nullptr);
       }
       rows.push_back(row);
     }
@@ -154,8 +161,9 @@ std::vector<LeftOutRow> kitchen_leave_one_out(int stride) {
           }
         }
         const std::size_t k = camera_index(rig, ids.at(left_out));
-        check_left_out(others, rig.cameras[k], setting.margins.front(), measured(rig.cameras[k], frames[k]), {}, stride,
-                       row.figures, nullptr);
+        const DepthImage depth = measured(rig.cameras[k], frames[k]);
+        check_left_out(others, {rig.cameras[k], setting.margins.front(), depth, {}, floor(rig)}, stride, row.figures,
+                       nullptr);
       }
     }
     rows.push_back(row);

@@ -21,10 +21,17 @@ struct MarkedReading {
   LeftOutCause cause;
 };
 
-/// One camera left out in one frame under one setting. `median` as in cause_of(). Adds to `figures`; the violating
-/// readings are appended to `marked` unless that is null.
-void check_left_out(LeaveOneOut& others, const RigCamera& left_out, const CameraMargins& margins,
-                    const DepthImage& depth, const DepthImage& median, int stride, LeftOutFigures& figures,
+/// What is left out: one image.
+struct LeftOutImage {
+  const RigCamera& camera;
+  const CameraMargins& margins;
+  const DepthImage& depth;   ///< measured
+  const DepthImage& median;  ///< as in cause_of()
+  Pose T_floor_world;
+};
+
+/// Checks one image. Adds to `figures`; the violating readings are appended to `marked` unless that is null.
+void check_left_out(LeaveOneOut& others, const LeftOutImage& image, int stride, LeftOutFigures& figures,
                     std::vector<MarkedReading>* marked);
 
 /// kinect3_ball: every camera left out in turn, in the frames given (indices), under ball_margins(); every
@@ -39,7 +46,8 @@ void check_left_out(LeaveOneOut& others, const RigCamera& left_out, const Camera
 
 [[nodiscard]] std::string left_out_tables(const std::vector<LeftOutRow>& rows);
 
-/// The three images of a frame with their violating readings (every second pixel), without margins and with the sensor's.
+/// The three images of a frame with their violating readings (every second pixel), without margins and with the
+/// sensor's.
 void save_left_out_picture(const std::filesystem::path& file, input::Recording& recording,
                            const std::vector<int>& frames, int frame);
 
