@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "depthgrid/core/aligned_vector.hpp"
+
 namespace depthgrid {
 
 /// How the pixels of a depth image are stored.
@@ -53,7 +55,8 @@ void validate(const MeasurementRule& rule, const char* name = "measurement rule"
 [[nodiscard]] std::optional<float> measured_depth_m(const DepthView& view, const MeasurementRule& rule, int u,
                                                     int v) noexcept;
 
-/// A dense float depth image owned by the library: row-major, no padding, metres, 0 = no measurement.
+/// A dense float depth image owned by the library: row-major, no padding, metres, 0 = no measurement. The first pixel
+/// lies at the beginning of a cache line.
 class DepthImage {
  public:
   DepthImage() = default;
@@ -73,7 +76,7 @@ class DepthImage {
  private:
   int width_px_ = 0;
   int height_px_ = 0;
-  std::vector<float> depth_m_;
+  AlignedVector<float> depth_m_;
 };
 
 /// Writes the measured depths of `view` into `image` (0 = no measurement). Sizes must be equal. Does not allocate.

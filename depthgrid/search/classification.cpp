@@ -48,7 +48,7 @@ struct Sight {
                        inside.v1 < pixels.v1;
     for (int v = inside.v0; v <= inside.v1; ++v) {
       for (int u = inside.u0; u <= inside.u1; ++u) {
-        const auto depth_m = static_cast<double>(view.measured_m().at(u, v));
+        const auto depth_m = static_cast<double>(view.measured_m(u, v));
         if (!(depth_m > 0)) {
           known.unmeasured = true;
         } else if (std::abs(p.z() - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {

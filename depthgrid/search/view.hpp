@@ -1,10 +1,12 @@
 // One camera's newest image, prepared for the search: free depths and their minimum pyramid.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "depthgrid/core/aligned_vector.hpp"
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/pose.hpp"
@@ -33,6 +35,9 @@ inline constexpr int kPyramidSpan = 8;
 class View {
  public:
   View(const RigCamera& camera, const CameraMargins& margins, const Policies& policies);
+  ~View();
+  View(View&&) noexcept;
+  View& operator=(View&&) noexcept;
 
   /// Takes a frame: normalises, subtracts the margin, applies the robot, the minimum filter and builds the pyramid.
   /// False when the frame is unusable (no data, another size or depth scale than the camera's, rows that overlap, half
@@ -45,8 +50,8 @@ class View {
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
   [[nodiscard]] const Pose& T_world_camera() const noexcept { return T_world_camera_; }
 
-  /// Measured depth, 0 = no measurement.
-  [[nodiscard]] const DepthImage& measured_m() const noexcept { return measured_m_; }
+  /// Measured depth of a pixel of the image, 0 = no measurement.
+  [[nodiscard]] float measured_m(int u, int v) const noexcept;
   /// A pixel's frustum is free between the blind zone and this depth: g, and where the pixel's robot interval
   /// [near, far] begins at or before g and ends behind it, that far end (what lies in the interval is the robot).
   [[nodiscard]] const DepthImage& free_m() const noexcept { return free_m_; }
@@ -65,22 +70,21 @@ class View {
   [[nodiscard]] const float* island_far_minima_m() const noexcept { return island_far_minima_m_.data(); }
 
  private:
+  struct Preparation;
+
   [[nodiscard]] bool is_usable(const Frame& frame) const noexcept;
   void clear() noexcept;
-  void join_robot(const RobotView& robot) noexcept;
+  void clear_islands() noexcept;
 
-  MeasurementRule rule_;
-  double metres_per_unit_;
-  double pocket_m_;
-  DepthImage measured_m_;
-  FreeDepth free_;
+  std::unique_ptr<Preparation> preparation_;
+  AlignedVector<std::byte> kept_;  ///< the image as it came, without padding
+  DepthFormat kept_format_ = DepthFormat::uint16_units;
   DepthImage free_m_;
   std::vector<PyramidLevel> levels_;
-  std::vector<float> minima_m_;
+  AlignedVector<float> minima_m_;
   bool has_islands_ = false;
   DepthImage island_near_m_, island_far_m_;
-  std::vector<float> island_near_maxima_m_, island_far_minima_m_;
-  std::vector<float> pocket_intervals_m_;
+  AlignedVector<float> island_near_maxima_m_, island_far_minima_m_;
   Pose T_world_camera_ = Pose::Identity();
   double time_s_ = 0;
   bool present_ = false;

@@ -68,7 +68,7 @@ int number_of(const View& view) {
                view.has_islands();
   for (int v = 0; v < kHeight; ++v) {
     for (int u = 0; u < kWidth; ++u) {
-      whole = whole && view.free_m().at(u, v) == depth_m && view.measured_m().at(u, v) == depth_m &&
+      whole = whole && view.free_m().at(u, v) == depth_m && view.measured_m(u, v) == depth_m &&
               view.island_near_m().at(u, v) == depth_m + 0.25F && view.island_far_m().at(u, v) == depth_m + 0.5F;
     }
   }

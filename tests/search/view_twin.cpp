@@ -90,8 +90,8 @@ testing::AssertionResult Twin::pixel(int u, int v, bool& is_island) const {
   const auto wrong = [&](const char* what) {
     return testing::AssertionFailure() << what << " of pixel (" << u << ", " << v << ") is wrong: ";
   };
-  if (view.measured_m().at(u, v) != measured_m(u, v)) {
-    return wrong("measured depth") << view.measured_m().at(u, v) << ", should be " << measured_m(u, v);
+  if (view.measured_m(u, v) != measured_m(u, v)) {
+    return wrong("measured depth") << view.measured_m(u, v) << ", should be " << measured_m(u, v);
   }
   const Interval r = robot_at(u, v);
   const float island_near_m = view.has_islands() ? view.island_near_m().at(u, v) : kInf;

@@ -1,0 +1,120 @@
+// Which parts of an image need single precision, and the rows that the passes over a new image hand on to each other.
+// Internal.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "depthgrid/core/aligned_vector.hpp"
+
+namespace depthgrid::search {
+
+/// Columns or rows [begin, end); without an argument none.
+struct PixelRange {
+  int begin = std::numeric_limits<int>::max();
+  int end = 0;
+  [[nodiscard]] bool empty() const noexcept { return begin >= end; }
+};
+
+/// The smallest range that holds both, of ranges that are either not empty or none.
+[[nodiscard]] inline PixelRange joined(const PixelRange& a, const PixelRange& b) noexcept {
+  return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
+
+/// What lies in both; none if nothing does.
+[[nodiscard]] inline PixelRange common(const PixelRange& a, const PixelRange& b) noexcept {
+  const PixelRange both{std::max(a.begin, b.begin), std::min(a.end, b.end)};
+  return both.empty() ? PixelRange{} : both;
+}
+
+/// For each row of an image the columns in which the robot is, and those that therefore are worked out in single
+/// precision. All columns begin and end at multiples of kStep, or at the image's border, so that they do not depend on
+/// the length of vectors.
+struct FloatColumns {
+  static constexpr int kStep = 16;
+
+  FloatColumns(int width_px, int height_px, int reach_px);
+
+  /// After `robot` was filled in.
+  void spread() noexcept;
+  /// Everything, whatever `robot` is.
+  void fill() noexcept;
+  /// Nothing, and no robot.
+  void clear() noexcept;
+
+  int width_px;
+  int reach_px;
+  std::vector<PixelRange> robot;     ///< the robot's interval is read here
+  std::vector<PixelRange> free;      ///< g depends on the robot
+  std::vector<PixelRange> filtered;  ///< minima along the row that `free` reads
+  std::vector<PixelRange> reduced;   ///< what those read
+  std::vector<PixelRange> texels;    ///< of level 0 that depend on `free`
+  std::vector<PixelRange> windows;   ///< minima along the row that `texels` read
+};
+
+/// Rows of 16-bit values, or floats: with room for a vector and for neighbours before and behind.
+template <class Value>
+class ScratchRows {
+ public:
+  ScratchRows(int width_px, int count)
+      : stride_((static_cast<std::size_t>(width_px) / kMargin + 3) * kMargin),
+        values_(static_cast<std::size_t>(count) * stride_) {}
+  [[nodiscard]] Value* operator[](int n) noexcept {
+    return values_.data() + static_cast<std::size_t>(n) * stride_ + kMargin;
+  }
+  void fill(int n, Value value) noexcept { std::fill_n((*this)[n] - kMargin, stride_, value); }
+
+ private:
+  static constexpr std::size_t kMargin = 64;
+  std::size_t stride_;
+  AlignedVector<Value> values_;
+};
+
+/// Rows that are kept for as long as the next passes read them; w is the reach of the filter.
+class PreparationRows {
+ public:
+  PreparationRows(int width_px, int height_px, int reach_px);
+
+  /// Codes of row v (see Reading); zeros before and behind the row. The last w + 2 rows are kept.
+  [[nodiscard]] std::uint16_t* codes(int v) noexcept {
+    return narrow_[kNarrow + 4 * reach_px_ + 7 + v % (reach_px_ + 2)];
+  }
+  /// Minima of each value and w to both sides; all zero outside the image. The last 2 w + 2 rows are kept.
+  [[nodiscard]] std::uint16_t* narrow_minimum(int v) noexcept {
+    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + v % (2 * reach_px_ + 2)];
+  }
+  /// Minima of those of each column and the three to its right. The last 2 w + 5 rows are kept.
+  [[nodiscard]] std::uint16_t* narrow_window(int v) noexcept {
+    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + 2 * reach_px_ + 2 + v % (2 * reach_px_ + 5)];
+  }
+  /// Reduced depths of one row; zeros before and behind the row.
+  [[nodiscard]] float* reduced_m() noexcept { return wide_[2]; }
+  /// Minima of each reduced depth and w to both sides; all zero outside the image. The last 2 w + 2 rows are kept.
+  [[nodiscard]] float* minimum_m(int v) noexcept {
+    return outside(v) ? wide_[kZero] : wide_[kWide + v % (2 * reach_px_ + 2)];
+  }
+  /// Minima of each free depth and the three to its right; all infinite outside the image. The last five rows are kept.
+  [[nodiscard]] float* window_m(int v) noexcept {
+    return outside(v) ? wide_[kInfinite] : wide_[kWide + 2 * reach_px_ + 2 + v % 5];
+  }
+  /// For the intermediate result of one row of texels.
+  [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
+
+  FloatColumns columns;
+
+ private:
+  static constexpr int kZero = 0;  ///< of both kinds
+  static constexpr int kInfinite = 1;
+  static constexpr int kNarrow = 1;
+  static constexpr int kWide = 4;
+  [[nodiscard]] bool outside(int v) const noexcept { return v < 0 || v >= height_px_; }
+
+  int height_px_;
+  int reach_px_;
+  ScratchRows<std::uint16_t> narrow_;
+  ScratchRows<float> wide_;
+};
+
+}  // namespace depthgrid::search
