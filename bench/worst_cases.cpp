@@ -34,7 +34,7 @@ struct Case {
 };
 
 Case run(const search::ViewStore& store, const std::vector<search::Primitive>& points, const search::Budget& budget) {
-  search::Search searcher(store.settings());
+  search::Search searcher;
   std::vector<search::Answer> answers(points.size());
   const search::Snapshot snapshot = store.snapshot();
   std::vector<double> times_ms;

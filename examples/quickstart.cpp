@@ -68,7 +68,7 @@ int run() {
 
   // 3. Every buffer is allocated here.
   search::ViewStore store(rig, settings);
-  search::Search search(settings);
+  search::Search search;
 
   // 4. For every exposure of every camera, as it comes. A camera that moves gives its pose with the image.
   const std::vector<std::uint16_t> pixels = image_from_driver();

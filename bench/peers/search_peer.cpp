@@ -24,8 +24,7 @@ search::Settings search_settings(const PeerSetting& setting, double resolution_m
 SearchPeer::SearchPeer(const PeerSetting& setting, double resolution_m)
     : rho_m_(setting.rho_m),
       store_(setting.rig, search_settings(setting, resolution_m)),
-      snapshot_(store_.snapshot()),
-      search_(store_.settings()) {}
+      snapshot_(store_.snapshot()) {}
 
 void SearchPeer::prepare(std::span<const Frame> frames, const Region& /*region*/) {
   for (std::size_t k = 0; k < frames.size(); ++k) {

@@ -62,7 +62,7 @@ double allowance_m(const CameraMargins& left_out, double v_max_m_s, double depth
 }
 
 LeaveOneOut::LeaveOneOut(const Rig& asked, const std::vector<CameraMargins>& margins, double v_max_m_s)
-    : settings_(settings_of(margins, v_max_m_s)), store_(asked, settings_), search_(settings_, 1024) {}
+    : settings_(settings_of(margins, v_max_m_s)), store_(asked, settings_) {}
 
 void LeaveOneOut::update(std::size_t slot, const Frame& frame, const Pose& T_world_camera) {
   if (store_.update(slot, frame, T_world_camera) != search::UpdateResult::taken) {

@@ -73,7 +73,7 @@ std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const 
     points.push_back(search::point(p_world));
   }
   std::vector<search::Answer> found(points.size());
-  search::Search(settings).distances(store.snapshot(), points, found);
+  search::Search().distances(store.snapshot(), points, found);
   std::vector<Proximity> answers;
   for (const search::Answer& answer : found) {
     answers.push_back(answer.nearest);

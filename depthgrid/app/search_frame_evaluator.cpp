@@ -7,7 +7,7 @@ namespace {
 class SearchFrameEvaluator final : public FrameEvaluator {
  public:
   SearchFrameEvaluator(const Rig& rig, const search::Settings& settings, const search::Budget& budget, bool hybrid)
-      : store_(rig, settings), search_(settings), budget_(budget), hybrid_(hybrid) {}
+      : store_(rig, settings), budget_(budget), hybrid_(hybrid) {}
 
   bool update(std::span<const Frame> frames) override {
     bool complete = true;

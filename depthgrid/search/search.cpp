@@ -36,14 +36,13 @@ struct Search::Plan {
 };
 
 struct Search::State {
-  explicit State(const Settings& given) : settings(given), frontier(kFrontierCapacity) {}
+  State() : frontier(kFrontierCapacity) {}
 
   void call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
             const Budget& budget, Count* count, bool with_direction) noexcept;
   void group(const Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
              Allowance& allowance, bool with_direction) noexcept;
 
-  Settings settings;
   CubeQuery query;
   Frontier frontier;
   std::array<Plan, kGroup> plans;
@@ -203,7 +202,7 @@ void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> pr
   }
 }
 
-Search::Search(const Settings& settings, std::size_t) : state_(std::make_unique<State>(settings)) {}
+Search::Search() : state_(std::make_unique<State>()) {}
 Search::~Search() = default;
 Search::Search(Search&&) noexcept = default;
 Search& Search::operator=(Search&&) noexcept = default;

@@ -57,15 +57,15 @@ struct Nearest;
 /// Scratch memory of one thread; everything is allocated by the constructor. Not for two threads at once.
 class Search {
  public:
-  /// For rigs and settings like those of `store`; `largest_call` is the most primitives of one call.
-  explicit Search(const Settings& settings, std::size_t largest_call = 128);
+  /// For snapshots of any store and calls of any size.
+  Search();
   ~Search();
   Search(Search&&) noexcept;
   Search& operator=(Search&&) noexcept;
 
   /// Distances of many primitives. answers.size() should equal primitives.size(); answers without a primitive, and
-  /// those of primitives that are not finite or have a negative radius, are not_evaluated. More primitives than
-  /// `largest_call` are treated in parts. Does not allocate, lock or throw.
+  /// those of primitives that are not finite or have a negative radius, are not_evaluated. Primitives beside each
+  /// other in the call that are near to each other are searched together. Does not allocate, lock or throw.
   void distances(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
                  const Budget& budget = {}, Count* count = nullptr) noexcept;
 

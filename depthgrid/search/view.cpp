@@ -64,7 +64,8 @@ struct View::Preparation {
 View::View(const RigCamera& camera, const CameraMargins& margins, const Policies& policies)
     : free_m_(camera.intrinsics.width_px, camera.intrinsics.height_px),
       island_near_m_(free_m_),
-      island_far_m_(free_m_) {
+      island_far_m_(free_m_),
+      T_world_camera_(camera.T_world_camera) {
   validate(margins.sensor);
   preparation_ = std::make_unique<Preparation>(camera, margins, policies);
   kept_.resize(pixel_count(free_m_) * sizeof(float));
@@ -129,6 +130,7 @@ void View::clear_islands() noexcept {
 }
 
 bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
+  T_world_camera_ = T_world_camera;  // what the camera covers is known although nothing in it is free
   if (!is_usable(frame)) {
     clear();
     return false;
@@ -152,7 +154,6 @@ bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
                           island_near_maxima_m_.data(), island_far_minima_m_.data(), p.island_texels);
   }
   kept_format_ = frame.depth.format;
-  T_world_camera_ = T_world_camera;
   time_s_ = frame.time_s;
   present_ = true;
   return true;

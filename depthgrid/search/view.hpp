@@ -48,6 +48,7 @@ class View {
   [[nodiscard]] int height_px() const noexcept { return free_m_.height_px(); }
   [[nodiscard]] bool present() const noexcept { return present_; }
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
+  /// Of the last frame, usable or not; where the rig says before the first.
   [[nodiscard]] const Pose& T_world_camera() const noexcept { return T_world_camera_; }
 
   /// Measured depth of a pixel of the image, 0 = no measurement.
@@ -85,7 +86,7 @@ class View {
   bool has_islands_ = false;
   DepthImage island_near_m_, island_far_m_;
   AlignedVector<float> island_near_maxima_m_, island_far_minima_m_;
-  Pose T_world_camera_ = Pose::Identity();
+  Pose T_world_camera_;
   double time_s_ = 0;
   bool present_ = false;
 };

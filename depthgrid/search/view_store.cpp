@@ -109,6 +109,12 @@ struct ViewStore::State {
     return c.views.size();
   }
 
+  /// For the camera's writer, or whoever holds it.
+  [[nodiscard]] const View& newest_view(std::size_t camera) const noexcept {
+    return cameras[camera].views[slot_of(newest.load(), camera)];
+  }
+
+  /// With a pose that is none the camera stays where it was.
   UpdateResult update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
     const std::size_t slot = free_slot(camera);
     std::vector<View>& views = cameras[camera].views;
@@ -117,7 +123,7 @@ struct ViewStore::State {
     }
     // Does not throw or allocate, because is_valid() has checked the same rules.
     const bool taken = is_valid(T_world_camera) ? views[slot].update(frame, pose_from_matrix(T_world_camera.matrix()))
-                                                : views[slot].update(Frame{}, rig.cameras[camera].T_world_camera);
+                                                : views[slot].update(Frame{}, newest_view(camera).T_world_camera());
     std::uint64_t slots = newest.load();
     while (!newest.compare_exchange_weak(slots, with_slot(slots, camera, slot))) {
     }
@@ -219,10 +225,7 @@ void Snapshot::release() noexcept {
 }
 
 std::size_t Snapshot::camera_count() const noexcept { return state_ != nullptr ? state_->cameras.size() : 0; }
-const Pose& Snapshot::T_world_camera(std::size_t k) const noexcept {
-  return view(k).present() ? view(k).T_world_camera() : camera(k).T_world_camera;
-}
-
+const Pose& Snapshot::T_world_camera(std::size_t camera) const noexcept { return view(camera).T_world_camera(); }
 const View& Snapshot::view(std::size_t camera) const noexcept {
   return state_->cameras[camera].views[slot_of(slots_, camera)];
 }

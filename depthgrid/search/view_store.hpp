@@ -66,7 +66,7 @@ class Snapshot {
   /// e_k of this snapshot; time_m = v_max (|t_k - t_ref| + half exposure + time uncertainty).
   [[nodiscard]] const PoseMargin& pose_margin(std::size_t camera) const noexcept;
   [[nodiscard]] const RigCamera& camera(std::size_t camera) const noexcept;
-  /// Where the camera was at its newest usable frame; where the rig says while there is none.
+  /// Where the camera was at its newest frame, usable or not; where the rig says while there is none.
   [[nodiscard]] const Pose& T_world_camera(std::size_t camera) const noexcept;
   [[nodiscard]] const Settings& settings() const noexcept;
   /// Newest exposure of all cameras present; NaN when there is none.

@@ -26,7 +26,7 @@ int main() try {
   settings.margins = depthgrid::camera_margins(file.rig);
   settings.v_max_m_s = 2.0;
   search::ViewStore store(file.rig, settings);
-  search::Search search(settings);
+  search::Search search;
 
   const std::vector<std::uint16_t> pixels(320 * 240, 2000);  // a wall at 2 m
   depthgrid::Frame frame;

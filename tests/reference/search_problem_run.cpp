@@ -19,12 +19,10 @@ search::Snapshot deliver(const SearchProblem& problem, search::ViewStore& store)
 
 }  // namespace
 
-// Calls of one, of a few and of all primitives, by the seed.
 SearchRun::SearchRun(const SearchProblem& problem)
     : problem_(&problem),
       store_(problem.rig, problem.settings, 1),
-      snapshot_(deliver(problem, store_)),
-      search_(problem.settings, std::size_t{1} << (problem.options.seed % 8)) {}
+      snapshot_(deliver(problem, store_)) {}
 
 std::vector<search::Answer> SearchRun::distances(const search::Budget& budget) {
   std::vector<search::Answer> answers(problem_->primitives.size());

@@ -28,7 +28,7 @@ TEST(NoAllocation, FromImageToAnswer) {
       setup.settings.policies = {Policy::ignored, Policy::ignored, Policy::ignored, 0.05};
     }
     ViewStore store(setup.rig, setup.settings);
-    Search search(setup.settings, 4);
+    Search search;
     std::vector<Primitive> primitives;
     for (const Eigen::Vector3d& p_world : problem.points_world) {
       primitives.push_back(point(p_world));

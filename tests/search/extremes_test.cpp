@@ -132,7 +132,7 @@ TEST(Snapshots, WithoutAnyFrameFreeNothing) {
   const Snapshot snapshot = store.snapshot();
   EXPECT_TRUE(snapshot.stale());
   EXPECT_TRUE(std::isnan(snapshot.reference_time_s()));
-  Search search(one.setup.settings);
+  Search search;
   const std::vector<Primitive> primitives{point({0, 0, 1}), point({0, 0, -1}), point({0, 0, 0.1}),
                                           point({2.5, 0, 0.5})};
   std::vector<Answer> answers(primitives.size());
@@ -151,7 +151,7 @@ TEST(Snapshots, WithoutAnyFrameLeaveTheIgnoredOut) {
   one.setup.settings.policies.unobserved = Policy::ignored;
   one.setup.settings.policies.outside = Policy::ignored;
   const ViewStore store(one.setup.rig, one.setup.settings);
-  Search search(one.setup.settings);
+  Search search;
   const auto ask = [&](const Vector3d& p) {
     const Primitive primitive = point(p);
     Answer answer;
@@ -222,7 +222,7 @@ TEST(Snapshots, KnowWhereACameraWithoutAFrameStands) {
   const Pose moved = look_at(Vector3d(-1, 0, 0), Vector3d(-1, 1, 0));
   one.setup.rig.cameras[0].T_world_camera = at_rig;
   ViewStore store(one.setup.rig, one.setup.settings);
-  Search search(one.setup.settings);
+  Search search;
   const auto distance_m = [&](const Vector3d& p_world) {
     const Primitive primitive = point(p_world);
     Answer answer;

@@ -280,7 +280,7 @@ TEST(Properties, PosesOfFramesAreThoseOfTheRig) {
       ASSERT_EQ(store.update(k, setup.frames[k], setup.rig.cameras[k].T_world_camera), UpdateResult::taken);
     }
     Asker asker(setup);
-    Search search(setup.settings);
+    Search search;
     for (const Vector3d& p_world : problem.points_world) {
       const Primitive primitive = point(p_world);
       Answer answer;

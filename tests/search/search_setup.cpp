@@ -82,9 +82,8 @@ reference::Problem oracle_problem(const SearchSetup& setup, double grown_m, doub
   return problem;
 }
 
-Asker::Asker(const SearchSetup& setup, std::size_t largest_call)
+Asker::Asker(const SearchSetup& setup)
     : store_(std::make_unique<ViewStore>(setup.rig, setup.settings)),
-      search_(setup.settings, largest_call),
       snapshot_([&] {
         for (std::size_t k = 0; k < setup.frames.size(); ++k) {
           EXPECT_EQ(store_->update(k, setup.frames[k]), UpdateResult::taken) << "camera " << k;

@@ -42,7 +42,7 @@ reference::Problem oracle_problem(const SearchSetup& setup, double grown_m = 0, 
 /// A store that has taken every frame, the snapshot of it, and a search.
 class Asker {
  public:
-  explicit Asker(const SearchSetup& setup, std::size_t largest_call = 128);
+  explicit Asker(const SearchSetup& setup);
 
   Answer distance(const Primitive& primitive, const Budget& budget = {});
   std::vector<Answer> distances(std::span<const Primitive> primitives, const Budget& budget = {});

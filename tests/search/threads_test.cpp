@@ -93,7 +93,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
         const std::size_t i = (set >> k) & 1U;
         ASSERT_EQ(store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]), UpdateResult::taken);
       }
-      Search search(deliveries.setup.settings);
+      Search search;
       std::vector<Answer> answers(primitives.size());
       search.distances(store.snapshot(), primitives, answers);
       legal.push_back(told(answers));
@@ -126,7 +126,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
     std::array<std::vector<int>, kReaders> seen;
     for (std::size_t r = 0; r < kReaders; ++r) {
       readers.emplace_back([&, r] {
-        Search search(deliveries.setup.settings);
+        Search search;
         std::vector<Answer> answers(primitives.size());
         seen[r].assign(legal.size(), 0);
         // On a busy machine the writers may not have had a turn by then.
@@ -174,7 +174,7 @@ TEST(Threads, MayShareOneSnapshot) {
   std::vector<std::thread> readers;
   for (Told& mine : answered) {
     readers.emplace_back([&] {
-      Search search(deliveries.setup.settings);
+      Search search;
       std::vector<Answer> answers(primitives.size());
       for (int n = 0; n < 50; ++n) {
         search.distances(snapshot, primitives, answers);

@@ -106,7 +106,7 @@ Lost count_lost(SearchSetup setup, const Crossing& crossing, const std::vector<d
                 double stamp_error_s = 0) {
   Lost result;
   reference::Random random(5);
-  Search search(setup.settings);
+  Search search;
   ViewStore store(setup.rig, setup.settings);
   for (int i = -2; i <= 2; ++i) {
     const double t_ref_s = i * 0.0373;
