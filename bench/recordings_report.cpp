@@ -16,9 +16,11 @@
 #include "depthgrid/grid/evaluation.hpp"
 #include "depthgrid/input/recording.hpp"
 #include "machine.hpp"
+#include "recordings/ball_search.hpp"
 #include "recordings/ball_study.hpp"
 #include "recordings/ball_tables.hpp"
 #include "recordings/kitchen_study.hpp"
+#include "recordings/left_out_study.hpp"
 
 namespace {
 
@@ -27,6 +29,9 @@ using namespace depthgrid;
 struct Options {
   std::string frames = "0:80:8";
   std::string picture = "docs/images/kinect3_ball.png";
+  std::string left_out_picture = "docs/images/leave-one-out.png";
+  int left_out_frame = 32;
+  int stride = 8;
   std::string output = "docs/recordings.md";
   std::string text = "bench/recordings/recordings.in.md";
 };
@@ -95,6 +100,13 @@ void run(const Options& options) {
   replace(text, "@BALL_POINTS@", std::to_string(study.points_per_frame));
   replace(text, "@BALL_TABLES@", bench::ball_tables(study, recording.rig()));
   replace(text, "@KITCHEN_TABLES@", bench::kitchen_tables());
+  replace(text, "@SEARCH_TABLES@", bench::ball_search_tables(bench::study_ball_search(recording, track, frames)));
+  replace(text, "@STRIDE@", std::to_string(options.stride));
+  replace(text, "@LEFT_OUT_TABLES@",
+          bench::left_out_tables(bench::ball_leave_one_out(recording, frames, options.stride)));
+  replace(text, "@KITCHEN_LEFT_OUT_TABLES@", bench::left_out_tables(bench::kitchen_leave_one_out(options.stride)));
+  bench::save_left_out_picture(options.left_out_picture, recording, frames,
+                               options.left_out_frame - recording.frame_number(0));
   replace(text, "@MACHINE@", bench::machine_line());
   app::OutputFile output(options.output);
   output.write(text);
@@ -109,6 +121,12 @@ int main(int argc, char** argv) {
     CLI::App app("Distances on the recordings kinect3_ball and redkitchen_poses, as docs/recordings.md.");
     app.add_option("--frames", options.frames, "frames of kinect3_ball, first:last:step")->capture_default_str();
     app.add_option("--picture", options.picture, "picture to write")->capture_default_str();
+    app.add_option("--left-out-picture", options.left_out_picture, "picture of the cameras left out")
+        ->capture_default_str();
+    app.add_option("--left-out-frame", options.left_out_frame, "its frame")->capture_default_str();
+    app.add_option("--stride", options.stride, "leave one out: every n-th pixel of every n-th row")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
     app.add_option("--output", options.output, "file to write, - for standard output")->capture_default_str();
     app.add_option("--text", options.text, "text with places for the tables")->capture_default_str();
     CLI11_PARSE(app, argc, argv);

@@ -20,10 +20,10 @@ struct BallSearchFigures {
   std::size_t tested = 0;        ///< with the ball's distance + kTolerance_m below rho, so that the claim can fail
   std::size_t over = 0;          ///< of all answers: answer > ball distance
   std::size_t over_2cm = 0;      ///< by more than the 2 cm to which the ball's place is known
-  std::size_t over_own =
-      0;  ///< of over_2cm: a camera's own fit of the ball lies as far from the point, give or take 1 cm
-  std::size_t over_5cm = 0;  ///< by more than kTolerance_m
-  double largest_m = 0;      ///< largest answer - ball distance
+  std::size_t over_absent = 0;   ///< of over: a camera of the set has no part in the ball's track in that frame
+  std::size_t over_own = 0;      ///< of the rest: a camera's own fit of the ball lies as far from the point
+  std::size_t over_5cm = 0;      ///< by more than kTolerance_m
+  double largest_m = 0;          ///< largest answer - ball distance
   /// Answers by state: measured, occluded, unmeasured, nothing within rho, any other.
   std::array<std::size_t, 5> states{};
 };

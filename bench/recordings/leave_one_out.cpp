@@ -47,7 +47,7 @@ bool look(const search::Snapshot& snapshot, LeftOutReading& reading) {
       reading.freed_by = static_cast<int>(k);
       reading.freed_u = u;
       reading.freed_v = v;
-      reading.gap_m = static_cast<double>(snapshot.view(k).measured_m().at(u, v)) - p_camera.z();
+      reading.gap_m = static_cast<double>(snapshot.view(k).measured_m(u, v)) - p_camera.z();
     }
   }
   return covered;
@@ -68,6 +68,18 @@ void LeaveOneOut::update(std::size_t slot, const Frame& frame, const Pose& T_wor
   if (store_.update(slot, frame, T_world_camera) != search::UpdateResult::taken) {
     fail("camera ", slot, ": its frame was not taken; it must have the calibration's size");
   }
+}
+
+DepthImage LeaveOneOut::measured(std::size_t slot) const {
+  const search::Snapshot snapshot = store_.snapshot();
+  const search::View& view = snapshot.view(slot);
+  DepthImage image(view.width_px(), view.height_px());
+  for (int v = 0; v < image.height_px(); ++v) {
+    for (int u = 0; u < image.width_px(); ++u) {
+      image.at(u, v) = view.measured_m(u, v);
+    }
+  }
+  return image;
 }
 
 std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const CameraMargins& margins,

@@ -60,7 +60,7 @@ class LeaveOneOut {
   [[nodiscard]] std::size_t camera_count() const noexcept { return store_.rig().cameras.size(); }
   [[nodiscard]] const std::string& id(std::size_t slot) const { return store_.rig().cameras[slot].id; }
   /// The measured image of a camera that is asked.
-  [[nodiscard]] DepthImage measured(std::size_t slot) const { return store_.snapshot().view(slot).measured_m(); }
+  [[nodiscard]] DepthImage measured(std::size_t slot) const;
 
  private:
   search::Settings settings_;

@@ -82,7 +82,16 @@ void save_left_out_picture(const std::filesystem::path& file, input::Recording& 
           static_cast<double>(kHead_px) + static_cast<double>(row) * (kHeight_px + kCaption_px), kWidth_px, kHeight_px};
       report::draw_depth(canvas, tile, depth, range);
       const double scale = tile.width_px / depth.width_px();
+      // Few marks would be lost among the image's own colours.
+      const bool few = marked.size() < 200;
       for (const MarkedReading& mark : marked) {
+        if (few) {
+          const report::CanvasPoint at{tile.x_px + scale * (mark.reading.u + 0.5),
+                                       tile.y_px + scale * (mark.reading.v + 0.5)};
+          canvas.disc(at, 4.0, report::kBlack);
+          canvas.disc(at, 3.0, kColours.at(static_cast<std::size_t>(mark.cause)));
+          continue;
+        }
         canvas.fill({tile.x_px + scale * (mark.reading.u - 0.5), tile.y_px + scale * (mark.reading.v - 0.5),
                      kStride * scale, kStride * scale},
                     kColours.at(static_cast<std::size_t>(mark.cause)));
