@@ -148,6 +148,7 @@ TEST(ViewStore, MovesACameraWithItsFrame) {
     change(broken);
     EXPECT_EQ(store.update(1, wall.frame(), broken), UpdateResult::unusable) << why;
     EXPECT_EQ(free_m(store.snapshot(), 1), 0.0F) << why;
+    EXPECT_EQ(store.snapshot().T_world_camera(1).translation(), moved.translation()) << "stays where it was: " << why;
   };
   refused("not a number", [](Pose& p) { p.translation().y() = kNaN; });
   refused("infinite", [](Pose& p) { p.translation().y() = kInf; });
