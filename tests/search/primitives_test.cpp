@@ -279,7 +279,7 @@ TEST(Primitives, InOneCallKeepTheirBoundsAndRepeatToTheBit) {
   for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker whole(setup);
-    Asker in_parts(setup, 4);  // fewer than are asked about
+    Asker more(setup);  // with room for more answers than are asked for
     std::vector<Primitive> primitives;
     for (int i = 0; i < 11; ++i) {
       // Far apart in some calls, close together in others.
@@ -289,7 +289,7 @@ TEST(Primitives, InOneCallKeepTheirBoundsAndRepeatToTheBit) {
     }
     std::vector<Answer> answers(13);
     answers[11].nearest.distance_m = answers[12].nearest.distance_m = 7;
-    in_parts.search().distances(in_parts.snapshot(), primitives, answers);
+    more.search().distances(more.snapshot(), primitives, answers);
     for (const std::size_t i : {11U, 12U}) {
       EXPECT_EQ(answers[i].nearest.state, ProximityState::not_evaluated) << "nobody asked";
       EXPECT_TRUE(std::isnan(answers[i].nearest.distance_m)) << "nobody asked";
