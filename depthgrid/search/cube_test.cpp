@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
@@ -97,10 +98,13 @@ struct Footprint {
   std::size_t level;     ///< index into LocalCamera::texels
 };
 
-HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1) {
+HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, std::uint32_t expected) {
   const Ints di;
-  const auto last =
+  const auto largest =
       static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0)))));
+  // What the lanes need is never more than expected but for rounding; it must not decide, since instruction sets differ
+  // in how many lanes they see at once.
+  const std::uint32_t last = std::max(expected, largest);
   // Up to three by three pixels are looked up one by one, so that not one too many counts; 6 2^l + 1 pixels lie in at
   // most eight texel columns of level l wherever they begin. The coarsest level has the whole image in eight.
   if (last <= (camera.has_islands ? 3U : 2U)) {
@@ -143,13 +147,14 @@ HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const floa
 }
 
 /// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high.
-HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high, Footprint& at) {
+HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high,
+                       std::uint32_t expected, Footprint& at) {
   const Floats d;
   const Ints di;
   at = footprint(camera, hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_low)),
                  hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_high)),
                  hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_low)),
-                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_high)));
+                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_high)), expected);
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const V free_m = extremum(camera, at, camera.free_m, camera.minima_m, min);
   return hn::And(inside, hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m)));
@@ -182,9 +187,9 @@ HWY_INLINE M free_or_island(const LocalCamera& camera, M inside, const Footprint
 }
 
 /// Lanes of `inside` that the camera frees: seen free, or robot.
-HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high) {
+HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high, std::uint32_t expected) {
   Footprint at;
-  const M free = seen_free(camera, inside, r, z_low, z_high, at);
+  const M free = seen_free(camera, inside, r, z_low, z_high, expected, at);
   if (!camera.has_islands || hn::AllTrue(Floats(), hn::Or(free, hn::Not(inside)))) {
     return free;
   }
@@ -192,7 +197,7 @@ HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_
 }
 
 /// Lanes that the camera frees wholly.
-HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b) {
+HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b, std::uint32_t expected) {
   const Floats d;
   const V zero = hn::Zero(d);
   const M in_front = hn::Gt(b.z_low, hn::Set(d, 1e-6F));
@@ -200,12 +205,12 @@ HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b) {
   const M inside =
       hn::And(hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
               hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
-  return freed(camera, inside, r, b.z_low, b.z_high);
+  return freed(camera, inside, r, b.z_low, b.z_high, expected);
 }
 
 /// Lanes of which the camera frees the part in its view between the clip's depths; where there is no such part it is
 /// free.
-HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b) {
+HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, std::uint32_t expected) {
   const Floats d;
   const V zero = hn::Zero(d);
   const V z_low = hn::Max(b.z_low, hn::Set(d, clip.low_m));
@@ -222,7 +227,7 @@ HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bo
   const V last_v = hn::Set(d, camera.height - 1);
   const Rectangle r{hn::Min(hn::Max(whole.u_low, zero), last_u), hn::Min(hn::Max(whole.u_high, zero), last_u),
                     hn::Min(hn::Max(whole.v_low, zero), last_v), hn::Min(hn::Max(whole.v_high, zero), last_v)};
-  return hn::Or(empty, freed(camera, hn::Not(empty), r, z_low, z_high));
+  return hn::Or(empty, freed(camera, hn::Not(empty), r, z_low, z_high, expected));
 }
 
 /// Lanes wholly outside the view between the two depths.
@@ -350,8 +355,48 @@ HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local,
   return hn::Or(hn::Not(in_view), hn::Or(own, hn::Or(by_column, by_row)));
 }
 
+/// The cubes that are split together.
+struct Family {
+  const Cube* parents;
+  int count;
+  float half_m;  ///< of the children
+
+  /// Pixels between the first and the last that any child projects to, at most: from the parents alone, in the same
+  /// scalar arithmetic for every instruction set.
+  [[nodiscard]] std::uint32_t widest_px(const LocalCamera& camera) const {
+    std::uint32_t widest = 0;
+    for (int i = 0; i < count; ++i) {
+      const Cube& c = parents[i];
+      const float* r = camera.rotation;
+      const float* a = camera.absolute_rotation;
+      const float x = std::abs(r[0] * c.x + r[1] * c.y + r[2] * c.z + camera.offset_m[0]);
+      const float y = std::abs(r[3] * c.x + r[4] * c.y + r[5] * c.z + camera.offset_m[1]);
+      const float z = r[6] * c.x + r[7] * c.y + r[8] * c.z + camera.offset_m[2];
+      float grown = 2 * camera.guard_m;
+      if (camera.has_reach) {
+        const float range = std::sqrt(x * x + y * y + z * z) + 4 * half_m;
+        grown += (camera.reach_m + camera.reach_per_m * range) * 1.0001F;
+      }
+      const float spread_x = (a[0] + a[1] + a[2]) * half_m;
+      const float spread_y = (a[3] + a[4] + a[5]) * half_m;
+      const float spread_z = (a[6] + a[7] + a[8]) * half_m;
+      const float z_low = z - 2 * spread_z - grown;  // of the parent
+      if (!(z_low > 1e-3F)) {
+        return 1U << 20U;  // the coarsest level
+      }
+      // A box of half sides h at x has its edges at (x +- h_x) / (z -+ h_z).
+      const float half_z = spread_z + grown;
+      const float wide = 2 * camera.fx * (spread_x + grown + (x + 2 * spread_x + grown) / z_low * half_z) / z_low;
+      const float high = 2 * camera.fy * (spread_y + grown + (y + 2 * spread_y + grown) / z_low * half_z) / z_low;
+      const float side = std::min(std::max(wide, high) * 1.0001F + 4 * camera.guard_px, 1e5F);
+      widest = std::max(widest, static_cast<std::uint32_t>(side) + 1);
+    }
+    return widest;
+  }
+};
+
 /// Lanes of `open` that stay open after every camera has been asked.
-HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
+HWY_INLINE M not_freed(CubeQuery& query, const Family& family, const Boxes& boxes, M open) {
   const Floats d;
   const V zero = hn::Zero(d);
   M uncovered = query.uncovered_ignored ? open : hn::Lt(zero, zero);
@@ -361,8 +406,8 @@ HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
     for (; n + 1 < query.camera_count; n += 2) {
       const LocalCamera& one = query.cameras[query.order[n]];
       const LocalCamera& other = query.cameras[query.order[n + 1]];
-      const M by_one = freed_whole(one, bounds_in(one, boxes));
-      const M by_other = freed_whole(other, bounds_in(other, boxes));
+      const M by_one = freed_whole(one, bounds_in(one, boxes), family.widest_px(one));
+      const M by_other = freed_whole(other, bounds_in(other, boxes), family.widest_px(other));
       open = hn::AndNot(hn::Or(by_one, by_other), open);
       if (hn::AllFalse(d, open)) {
         if (n > 0) {
@@ -377,7 +422,8 @@ HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
     const std::uint8_t k = query.order[n];
     const LocalCamera& camera = query.cameras[k];
     const Bounds bounds = bounds_in(camera, boxes);
-    M gone = freed_whole(camera, bounds);
+    const std::uint32_t expected = family.widest_px(camera);
+    M gone = freed_whole(camera, bounds, expected);
     // W and what a camera covers have nothing to do with its reach.
     const bool plain = query.principal == static_cast<int>(k) || query.uncovered_ignored;
     const Bounds own = plain && camera.has_reach ? bounds_in(camera, boxes, false) : bounds;
@@ -385,10 +431,10 @@ HWY_INLINE M not_freed(CubeQuery& query, const Boxes& boxes, M open) {
       gone = hn::Or(gone, outside_view(query, camera, own));
     }
     if (camera.space.to_view) {
-      gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds));
+      gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds, expected));
     }
     if (query.uncovered_ignored) {
-      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, own));
+      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, own, expected));
     }
     open = hn::AndNot(gone, open);
     if (hn::AllFalse(d, open)) {
@@ -463,6 +509,7 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
   alignas(64) float ys[kSplit];
   alignas(64) float zs[kSplit];
   std::uint32_t nearer[kGroup];
+  const Family family{parents, parent_count, half_m};
   const std::size_t end = parent_count == 2 ? 16 : 8;
   for (std::size_t first = 0; first < end; first += hn::Lanes(d)) {
     Boxes boxes{hn::Add(hn::Load(d, parent_x + first), hn::Mul(hn::Load(d, kSignX + first), half)),
@@ -489,7 +536,7 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
     if (hn::AllFalse(d, open)) {
       continue;
     }
-    open = not_freed(query, boxes, open);
+    open = not_freed(query, family, boxes, open);
     // Lanes of the parents that there are, and of each primitive those whose parent asks for it.
     const std::uint32_t open_bits = bits_of(open) & ((0xFFU | second_lanes) >> first);
     if (open_bits == 0) {
