@@ -20,9 +20,7 @@ search::Snapshot deliver(const SearchProblem& problem, search::ViewStore& store)
 }  // namespace
 
 SearchRun::SearchRun(const SearchProblem& problem)
-    : problem_(&problem),
-      store_(problem.rig, problem.settings, 1),
-      snapshot_(deliver(problem, store_)) {}
+    : problem_(&problem), store_(problem.rig, problem.settings, 1), snapshot_(deliver(problem, store_)) {}
 
 std::vector<search::Answer> SearchRun::distances(const search::Budget& budget) {
   std::vector<search::Answer> answers(problem_->primitives.size());
