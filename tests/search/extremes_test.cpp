@@ -111,6 +111,18 @@ TEST(Cameras, SeeNothingInTheirOwnPlace) {
   EXPECT_TRUE(answer.nearest.state == ProximityState::unobserved || answer.nearest.state == ProximityState::unmeasured);
 }
 
+TEST(Cameras, FreeNothingNearerThanTheirBlindZoneEnds) {
+  OneCamera one(4.0F);
+  one.setup.settings.rho_m = 0.4;
+  for (const double near_m : {0.2, 1.0, 2.0}) {
+    one.setup.rig.cameras[0].rule.near_m = near_m;
+    for (const double beyond_m : {-0.1, -0.001, 0.001, 0.02, 0.1, 0.2, 0.3, 0.39}) {
+      expect_within_oracle(one.setup, {0.01, -0.02, near_m + beyond_m});
+      expect_within_oracle(one.setup, {0.1 * near_m, 0.05 * near_m, near_m + beyond_m});
+    }
+  }
+}
+
 TEST(Cameras, CanBeSeenFreeByAnother) {
   OneCamera one(4.0F);
   RigCamera other = one.setup.rig.cameras[0];

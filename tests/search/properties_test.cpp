@@ -293,5 +293,61 @@ TEST(Properties, PosesOfFramesAreThoseOfTheRig) {
   });
 }
 
+/// D <= D: what the oracle says of the same question. Used where a property of the scene is what is hard.
+void expect_as_the_oracle(const Question& question, Tally& tally) { expect_not_farther(question, question, tally); }
+
+/// An orientation that is off by degrees makes e_k grow fast with the range, also within one cube.
+TEST(Properties, LargeErrorsOfOrientationAreCoveredEverywhere) {
+  Tally tally;
+  for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
+    Question question{make_setup(problem, random_space(random), true), problem.points_world};
+    for (CameraMargins& margins : question.setup.settings.margins) {
+      margins.rotation_rad = random.uniform(0.02, 0.15);
+      margins.translation_m = 0;
+      margins.half_exposure_s = margins.time_uncertainty_s = 0;
+    }
+    expect_as_the_oracle(question, tally);
+  });
+}
+
+/// Pixels of the robot without a measurement, and obstacles before it, leave islands that are the robot and nothing
+/// else.
+TEST(Properties, RobotsBehindMissingMeasurementsAreNoMoreThanRobots) {
+  Tally tally;
+  reference::RandomOptions options;
+  options.robot = true;
+  options.margins = false;
+  for_random_problems(100, options, [&](const RandomProblem& given, Random& random) {
+    RandomProblem problem = reference::make_random_problem(given.options);
+    const double share = random.uniform(0, 1);
+    for (std::size_t k = 0; k < problem.views.size(); ++k) {
+      const simulation::View& view = problem.views[k];
+      for (std::size_t i = 0; i < view.depth_m.index(0, view.depth_m.height_px()); ++i) {
+        if (view.robot_near_m.data()[i] > 0 && random.chance(share)) {
+          problem.views[k].depth_m.data()[i] = 0;
+          if (!problem.units[k].empty()) {
+            problem.units[k][i] = 0;
+          }
+        }
+      }
+    }
+    Question question{make_setup(problem, random_space(random)), {}};
+    for (std::size_t k = 0; k < problem.views.size(); ++k) {  // in and behind islands
+      const RigCamera& camera = problem.rig.cameras[k];
+      const DepthImage& near_m = problem.views[k].robot_near_m;
+      for (int attempt = 0; attempt < 200 && question.points_world.size() < 2 * (k + 1); ++attempt) {
+        const int u = random.integer(0, near_m.width_px() - 1);
+        const int v = random.integer(0, near_m.height_px() - 1);
+        if (near_m.at(u, v) > 0) {
+          const double z_m = static_cast<double>(near_m.at(u, v)) + random.uniform(-0.05, 0.2);
+          question.points_world.push_back(camera.T_world_camera *
+                                          deproject(camera.intrinsics, {u + 0.5, v + 0.5, z_m}));
+        }
+      }
+    }
+    expect_as_the_oracle(question, tally);
+  });
+}
+
 }  // namespace
 }  // namespace depthgrid::search

@@ -114,8 +114,10 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
     std::vector<std::thread> writers;
     for (std::size_t k = 0; k < kCameras; ++k) {
       writers.emplace_back([&, k] {
-        for (std::size_t n = 1; !stop.load(); ++n) {
-          const auto result = store.update(k, deliveries.frames[n % 2][k], deliveries.poses[n % 2][k]);
+        Random random(k);  // no rhythm: each buffer gets one frame as well as the other
+        while (!stop.load()) {
+          const std::size_t i = random.chance(0.5) ? 1 : 0;
+          const auto result = store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]);
           dropped += result == UpdateResult::dropped ? 1 : 0;
           EXPECT_NE(result, UpdateResult::unusable);
         }
