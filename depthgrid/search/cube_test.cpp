@@ -23,9 +23,9 @@ using V = hn::Vec<Floats>;
 using I = hn::Vec<Ints>;
 using M = hn::Mask<Floats>;
 
-alignas(64) constexpr float kSignX[kSplit] = {-1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1};
-alignas(64) constexpr float kSignY[kSplit] = {-1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1, 1};
-alignas(64) constexpr float kSignZ[kSplit] = {-1, -1, -1, -1, 1, 1, 1, 1, -1, -1, -1, -1, 1, 1, 1, 1};
+alignas(64) constexpr std::array<float, kSplit> kSignX{-1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1};
+alignas(64) constexpr std::array<float, kSplit> kSignY{-1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1, 1};
+alignas(64) constexpr std::array<float, kSplit> kSignZ{-1, -1, -1, -1, 1, 1, 1, 1, -1, -1, -1, -1, 1, 1, 1, 1};
 
 /// Cubes of at most so many resolutions half a side are asked whether they touch: larger ones hardly ever end a search.
 constexpr float kHintSides = 2.5F;
@@ -51,9 +51,9 @@ HWY_INLINE V weighted(const float* HWY_RESTRICT row, V x, V y, V z) {
 
 HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes, bool with_reach = true) {
   const Floats d;
-  const V x = hn::Add(weighted(camera.rotation, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[0]));
-  const V y = hn::Add(weighted(camera.rotation + 3, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[1]));
-  const V z = hn::Add(weighted(camera.rotation + 6, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[2]));
+  const V x = hn::Add(weighted(camera.rotation.data(), boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[0]));
+  const V y = hn::Add(weighted(camera.rotation.data() + 3, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[1]));
+  const V z = hn::Add(weighted(camera.rotation.data() + 6, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[2]));
   V grown = hn::Set(d, camera.guard_m);
   if (camera.has_reach && with_reach) {
     const V range =
@@ -61,7 +61,7 @@ HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes, bool 
     const V reach = hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range));
     grown = hn::Add(grown, hn::Mul(reach, hn::Set(d, 1.00001F)));
   }
-  const float* HWY_RESTRICT spread = camera.absolute_rotation;
+  const float* HWY_RESTRICT spread = camera.absolute_rotation.data();
   const V half_x = hn::Add(weighted(spread, boxes.half_x, boxes.half_y, boxes.half_z), grown);
   const V half_y = hn::Add(weighted(spread + 3, boxes.half_x, boxes.half_y, boxes.half_z), grown);
   const V half_z = hn::Add(weighted(spread + 6, boxes.half_x, boxes.half_y, boxes.half_z), grown);
@@ -93,9 +93,9 @@ HWY_INLINE Rectangle project(const LocalCamera& camera, const Bounds& b, V z_low
 /// Rectangles of pixels, one a lane, and the few texels of one level that cover all of them.
 struct Footprint {
   std::array<I, 4> column;
-  std::array<I, 4> row;  ///< times the level's width
-  int side;              ///< how many of them there are: 1 to 4
-  std::size_t level;     ///< index into LocalCamera::texels
+  std::array<I, 4> row;   ///< times the level's width
+  int side = 0;           ///< how many of them there are: 1 to 4
+  std::size_t level = 0;  ///< index into LocalCamera::texels
 };
 
 HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, std::uint32_t expected) {
@@ -272,7 +272,7 @@ HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
     const V ax = hn::Sub(boxes.x, px);
     const V ay = hn::Sub(boxes.y, py);
     const V az = hn::Sub(boxes.z, pz);
-    const V t0 = hn::Mul(weighted(axis.along, ax, ay, az), hn::Set(d, axis.inverse_square));
+    const V t0 = hn::Mul(weighted(axis.along.data(), ax, ay, az), hn::Set(d, axis.inverse_square));
     const V t = clamp(t0, zero, hn::Set(d, 1.0F));
     px = hn::Add(px, hn::Mul(t, hn::Set(d, axis.along[0])));
     py = hn::Add(py, hn::Mul(t, hn::Set(d, axis.along[1])));
@@ -307,9 +307,9 @@ HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local,
   const Ints di;
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0F);
-  const V x = hn::Add(weighted(camera.rotation, x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
-  const V y = hn::Add(weighted(camera.rotation + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
-  const V z = hn::Add(weighted(camera.rotation + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
+  const V x = hn::Add(weighted(camera.rotation.data(), x_local, y_local, z_local), hn::Set(d, camera.offset_m[0]));
+  const V y = hn::Add(weighted(camera.rotation.data() + 3, x_local, y_local, z_local), hn::Set(d, camera.offset_m[1]));
+  const V z = hn::Add(weighted(camera.rotation.data() + 6, x_local, y_local, z_local), hn::Set(d, camera.offset_m[2]));
   const V range = length(x, y, z);
   V slack = hn::Set(d, slack_m);
   if (camera.has_reach) {
@@ -367,8 +367,8 @@ struct Family {
     std::uint32_t widest = 0;
     for (int i = 0; i < count; ++i) {
       const Cube& c = parents[i];
-      const float* r = camera.rotation;
-      const float* a = camera.absolute_rotation;
+      const auto& r = camera.rotation;
+      const auto& a = camera.absolute_rotation;
       const float x = std::abs(r[0] * c.x + r[1] * c.y + r[2] * c.z + camera.offset_m[0]);
       const float y = std::abs(r[3] * c.x + r[4] * c.y + r[5] * c.z + camera.offset_m[1]);
       const float z = r[6] * c.x + r[7] * c.y + r[8] * c.z + camera.offset_m[2];
@@ -449,8 +449,8 @@ HWY_INLINE M not_freed(CubeQuery& query, const Family& family, const Boxes& boxe
 
 HWY_INLINE std::uint32_t bits_of(M mask) {
   const Floats d;
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(d, mask, bytes.data());
   return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
 }
 
@@ -484,6 +484,7 @@ HWY_INLINE std::uint32_t touching(const CubeQuery& query, const Axis& axis, cons
   return lanes;
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): lanes, primitives and children are three nested loops
 void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float half_m, Children& children) {
   const Floats d;
   const V zero = hn::Zero(d);
@@ -493,10 +494,10 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
   const std::uint32_t wanted = parents[0].primitives | second.primitives;
   const std::uint32_t second_lanes = parent_count == 2 ? 0xFF00U : 0U;
   const bool hints = half_m <= kHintSides * query.slack_m;
-  alignas(64) float parent_x[kSplit];
-  alignas(64) float parent_y[kSplit];
-  alignas(64) float parent_z[kSplit];
-  for (int i = 0; i < 8; ++i) {
+  alignas(64) std::array<float, kSplit> parent_x;  // NOLINT(*-member-init): written before it is read
+  alignas(64) std::array<float, kSplit> parent_y;  // NOLINT(*-member-init): written before it is read
+  alignas(64) std::array<float, kSplit> parent_z;  // NOLINT(*-member-init): written before it is read
+  for (std::size_t i = 0; i < 8; ++i) {
     parent_x[i] = parents[0].x;
     parent_y[i] = parents[0].y;
     parent_z[i] = parents[0].z;
@@ -504,32 +505,32 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
     parent_y[i + 8] = second.y;
     parent_z[i + 8] = second.z;
   }
-  alignas(64) float distances[kGroup][kSplit];
-  alignas(64) float xs[kSplit];
-  alignas(64) float ys[kSplit];
-  alignas(64) float zs[kSplit];
-  std::uint32_t nearer[kGroup];
+  alignas(64) std::array<std::array<float, kSplit>, kGroup> distances;  // NOLINT(*-member-init): as above
+  alignas(64) std::array<float, kSplit> xs;  // NOLINT(*-member-init): written before it is read
+  alignas(64) std::array<float, kSplit> ys;  // NOLINT(*-member-init): written before it is read
+  alignas(64) std::array<float, kSplit> zs;  // NOLINT(*-member-init): written before it is read
+  std::array<std::uint32_t, kGroup> nearer;  // NOLINT(*-member-init): as above
   const Family family{parents, parent_count, half_m};
   const std::size_t end = parent_count == 2 ? 16 : 8;
   for (std::size_t first = 0; first < end; first += hn::Lanes(d)) {
-    Boxes boxes{hn::Add(hn::Load(d, parent_x + first), hn::Mul(hn::Load(d, kSignX + first), half)),
-                hn::Add(hn::Load(d, parent_y + first), hn::Mul(hn::Load(d, kSignY + first), half)),
-                hn::Add(hn::Load(d, parent_z + first), hn::Mul(hn::Load(d, kSignZ + first), half)),
+    Boxes boxes{hn::Add(hn::Load(d, parent_x.data() + first), hn::Mul(hn::Load(d, kSignX.data() + first), half)),
+                hn::Add(hn::Load(d, parent_y.data() + first), hn::Mul(hn::Load(d, kSignY.data() + first), half)),
+                hn::Add(hn::Load(d, parent_z.data() + first), hn::Mul(hn::Load(d, kSignZ.data() + first), half)),
                 half,
                 half,
                 half,
                 hn::Set(d, half_m * 1.7320509F)};
-    hn::Store(boxes.x, d, xs + first);
-    hn::Store(boxes.y, d, ys + first);
-    hn::Store(boxes.z, d, zs + first);
+    hn::Store(boxes.x, d, xs.data() + first);
+    hn::Store(boxes.y, d, ys.data() + first);
+    hn::Store(boxes.z, d, zs.data() + first);
     const M inside = query.boxed ? cut_to_space(query, boxes) : hn::Eq(zero, zero);
     M open = hn::Lt(zero, zero);
     for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
-      const Axis& axis = query.axes[static_cast<std::size_t>(i)];
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const Axis& axis = query.axes[i];
       const V distance = proximities(axis, boxes).distance;
       const M here = hn::And(inside, hn::Lt(distance, hn::Set(d, axis.bound_m)));
-      hn::Store(distance, d, distances[i] + first);
+      hn::Store(distance, d, distances[i].data() + first);
       nearer[i] = bits_of(here);
       open = hn::Or(open, here);
     }
@@ -542,17 +543,17 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
     if (open_bits == 0) {
       continue;
     }
-    int child_of[kSplit];
+    std::array<int, kSplit> child_of;  // NOLINT(*-member-init): as above
     for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
-      const int lane = std::countr_zero(rest);
+      const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
       child_of[lane] = children.count;
       children.touching[static_cast<std::size_t>(children.count)] = 0;
-      const std::size_t at = first + static_cast<std::size_t>(lane);
+      const std::size_t at = first + lane;
       children.cubes[static_cast<std::size_t>(children.count++)] = {xs[at], ys[at], zs[at], 1e30F, parents[0].level + 1,
                                                                     0};
     }
     for (std::uint32_t rest = wanted; rest != 0; rest &= rest - 1) {
-      const int i = std::countr_zero(rest);
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const std::uint32_t asked =
           ((parents[0].primitives >> i) & 1U) * 0xFFU | ((second.primitives >> i) & 1U) * second_lanes;
       const std::uint32_t mine = nearer[i] & open_bits & (asked >> first);
@@ -560,17 +561,17 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
         continue;
       }
       for (std::uint32_t lanes = mine; lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
         Cube& child = children.cubes[static_cast<std::size_t>(child_of[lane])];
         child.primitives |= 1U << i;
-        child.distance_m = std::min(child.distance_m, distances[i][first + static_cast<std::size_t>(lane)]);
+        child.distance_m = std::min(child.distance_m, distances[i][first + lane]);
       }
       if (!hints) {
         continue;
       }
-      for (std::uint32_t lanes = touching(query, query.axes[static_cast<std::size_t>(i)], boxes, mine); lanes != 0;
-           lanes &= lanes - 1) {
-        children.touching[static_cast<std::size_t>(child_of[std::countr_zero(lanes)])] |= 1U << i;
+      for (std::uint32_t lanes = touching(query, query.axes[i], boxes, mine); lanes != 0; lanes &= lanes - 1) {
+        children.touching[static_cast<std::size_t>(child_of[static_cast<std::size_t>(std::countr_zero(lanes))])] |=
+            1U << i;
       }
     }
   }

@@ -17,8 +17,8 @@ inline constexpr std::size_t kGroup = 32;
 
 /// A primitive's axis from a to a + along, and how far from it an obstacle is of interest.
 struct Axis {
-  float a[3];
-  float along[3];
+  std::array<float, 3> a{};
+  std::array<float, 3> along{};
   float inverse_square = 0;  ///< 1 / |along|^2; 0 for a point
   float bound_m = 0;         ///< cubes that are not nearer are dropped
 };
@@ -31,9 +31,9 @@ struct CubeQuery {
 
   std::array<Axis, kGroup> axes;
 
-  bool boxed = false;  ///< W is a box that the primitives' surroundings leave
-  float box_low[3];    ///< rounded outwards
-  float box_high[3];
+  bool boxed = false;              ///< W is a box that the primitives' surroundings leave
+  std::array<float, 3> box_low{};  ///< rounded outwards
+  std::array<float, 3> box_high{};
   int principal = -1;  ///< W is this camera's view between these depths
   float d_min_m = 0;
   float d_max_m = 0;
@@ -43,7 +43,7 @@ struct CubeQuery {
 
 /// Children of a cube that may hold an obstacle nearer than the bound of one of their primitives.
 struct Children {
-  std::array<Cube, kSplit> cubes;
+  std::array<Cube, kSplit> cubes{};
   int count = 0;
   /// Of each child, bit i: every camera seems to have not-free space within slack and reach of the point that lies at
   /// the child's distance from axis i, towards its centre. A hint: in single precision, roughly for segments, and the

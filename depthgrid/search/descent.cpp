@@ -136,9 +136,9 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
     const Eigen::Vector3d middle = middle_world - origin_world_;
     query_.boxed =
         ((space_low_ - middle).array() > -extent_m).any() || ((space_high_ - middle).array() < extent_m).any();
-    for (int i = 0; i < 3; ++i) {
-      query_.box_low[i] = rounded_down(space_low_(i));
-      query_.box_high[i] = rounded_up(space_high_(i));
+    for (std::size_t i = 0; i < 3; ++i) {
+      query_.box_low[i] = rounded_down(space_low_[static_cast<Eigen::Index>(i)]);
+      query_.box_high[i] = rounded_up(space_high_[static_cast<Eigen::Index>(i)]);
     }
   } else {
     const auto& frustum = std::get<FrustumSpace>(settings_.space);
@@ -241,9 +241,9 @@ std::size_t Descent::add(const Primitive& primitive, double limit_m) noexcept {
   const Eigen::Vector3d along = axes_[i].b - axes_[i].a;
   const double square = along.squaredNorm();
   Axis& axis = query_.axes[i];
-  for (int k = 0; k < 3; ++k) {
-    axis.a[k] = static_cast<float>(axes_[i].a(k));
-    axis.along[k] = static_cast<float>(along(k));
+  for (std::size_t k = 0; k < 3; ++k) {
+    axis.a[k] = static_cast<float>(axes_[i].a[static_cast<Eigen::Index>(k)]);
+    axis.along[k] = static_cast<float>(along[static_cast<Eigen::Index>(k)]);
   }
   axis.inverse_square = square > 1e-12 ? static_cast<float>(1 / square) : 0.0F;
   set_bound(i, limit_m);
@@ -360,9 +360,36 @@ void Descent::find(Allowance& allowance) noexcept {
   }
 }
 
+/// Adds a cube to the means of the primitives for which it is fine enough to count as its centre does. Returns these.
+std::uint32_t Descent::add_piece(const Cube& cube, std::span<Eigen::Vector3d> means,
+                                 std::array<double, kGroup>& total) const noexcept {
+  const auto half_m = static_cast<double>(half_side_m(cube.level));
+  const double least_half_m = settings_.rho_m / 32;
+  const Box box = box_of(cube);
+  const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
+  const bool counts = is_blocked(centre, 0);
+  std::uint32_t fine = 0;
+  for (std::uint32_t rest = cube.primitives; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    const AxisToBox pair = nearest(axes_[i].a, axes_[i].b, centre, centre);
+    if (half_m > std::max(least_half_m, kFineness * pair.distance_m)) {
+      continue;
+    }
+    fine |= 1U << i;
+    const double distance_m = pair.distance_m - axes_[i].radius_m;
+    if (counts && distance_m < settings_.rho_m && pair.distance_m > 0) {
+      const double weight =
+          (box.high - box.low).prod() /
+          (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
+      means[i] += weight / pair.distance_m * (centre - pair.on_axis);
+      total[i] += weight;
+    }
+  }
+  return fine;
+}
+
 void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means,
                                    Allowance& allowance) noexcept {
-  const double least_half_m = settings_.rho_m / 32;
   double largest_m = 0;
   std::array<double, kGroup> total{};
   for (std::size_t i = 0; i < axis_count_; ++i) {
@@ -383,29 +410,7 @@ void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector
     split(query_, &cube, 1, half_side_m(cube.level + 1), children);
     for (int n = 0; n < children.count; ++n) {
       Cube child = children.cubes[static_cast<std::size_t>(n)];
-      const double half_m = static_cast<double>(half_side_m(child.level));
-      const Box box = box_of(child);
-      const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
-      std::uint32_t fine = 0;  // those for which the cube counts as one piece
-      for (std::uint32_t rest = child.primitives; rest != 0; rest &= rest - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-        const double distance_m = nearest(axes_[i].a, axes_[i].b, centre, centre).distance_m;
-        fine |= half_m <= std::max(least_half_m, kFineness * distance_m) ? 1U << i : 0U;
-      }
-      if (fine != 0 && is_blocked(centre, 0)) {
-        for (std::uint32_t rest = fine; rest != 0; rest &= rest - 1) {
-          const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-          const AxisToBox pair = nearest(axes_[i].a, axes_[i].b, centre, centre);
-          const double distance_m = pair.distance_m - axes_[i].radius_m;
-          if (distance_m < settings_.rho_m && pair.distance_m > 0) {
-            const double weight =
-                (box.high - box.low).prod() /
-                (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
-            means[i] += weight / pair.distance_m * (centre - pair.on_axis);
-            total[i] += weight;
-          }
-        }
-      }
+      const std::uint32_t fine = add_piece(child, means, total);
       child.primitives &= ~fine;
       if (child.primitives != 0) {
         static_cast<void>(frontier_.push(child));  // without room the direction is only coarser

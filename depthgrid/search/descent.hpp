@@ -60,7 +60,7 @@ class Descent {
   };
   struct LocalAxis {
     Eigen::Vector3d a, b;
-    double radius_m;
+    double radius_m = 0;
   };
 
   void set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept;
@@ -76,6 +76,8 @@ class Descent {
   void set_bound(std::size_t i, double bound_m) noexcept;
   void offer(const AxisToBox& pair, std::size_t i) noexcept;
   void take(Children& children) noexcept;
+  [[nodiscard]] std::uint32_t add_piece(const Cube& cube, std::span<Eigen::Vector3d> means,
+                                        std::array<double, kGroup>& total) const noexcept;
   void stop(std::uint32_t primitives, double at_m) noexcept;
 
   const Snapshot& snapshot_;

@@ -35,10 +35,12 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.offset_camera_m = local.R_camera_world * (origin_world - T_world_camera.translation());
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      local.rotation[3 * row + column] = static_cast<float>(local.R_camera_world(row, column));
-      local.absolute_rotation[3 * row + column] = up(std::abs(local.R_camera_world(row, column)));
+      local.rotation[static_cast<std::size_t>(3 * row + column)] =
+          static_cast<float>(local.R_camera_world(row, column));
+      local.absolute_rotation[static_cast<std::size_t>(3 * row + column)] =
+          up(std::abs(local.R_camera_world(row, column)));
     }
-    local.offset_m[row] = static_cast<float>(local.offset_camera_m(row));
+    local.offset_m[static_cast<std::size_t>(row)] = static_cast<float>(local.offset_camera_m(row));
   }
   // Ten roundings at most, each of at most half an ulp of the largest intermediate value.
   const double largest_m = local.offset_camera_m.cwiseAbs().maxCoeff() + 3 * extent_m;

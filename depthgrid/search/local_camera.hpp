@@ -32,16 +32,16 @@ struct Texels {
 struct LocalCamera {
   static constexpr std::size_t kMostTexels = 16;
   // Single precision: what the cube test reads. x_camera = rotation x_local + offset.
-  float rotation[9];
-  float absolute_rotation[9];
-  float offset_m[3];
-  float guard_m;   ///< more than the rounding of x_camera for any cube of the query
-  float guard_px;  ///< more than the rounding of a projection inside the image
-  float fx, fy, cx, cy;
-  float width, height;
-  float blind_m;      ///< nothing up to this depth is free (a little above the blind zone's end)
-  float reach_m;      ///< e at the camera's centre
-  float reach_per_m;  ///< growth of e with the range
+  std::array<float, 9> rotation{};  ///< row by row
+  std::array<float, 9> absolute_rotation{};
+  std::array<float, 3> offset_m{};
+  float guard_m = 0;   ///< more than the rounding of x_camera for any cube of the query
+  float guard_px = 0;  ///< more than the rounding of a projection inside the image
+  float fx = 0, fy = 0, cx = 0, cy = 0;
+  float width = 0, height = 0;
+  float blind_m = 0;      ///< nothing up to this depth is free (a little above the blind zone's end)
+  float reach_m = 0;      ///< e at the camera's centre
+  float reach_per_m = 0;  ///< growth of e with the range
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
   std::array<Texels, kMostTexels> texels{};
@@ -57,8 +57,8 @@ struct LocalCamera {
   Clip coverage;
 
   // Double precision: what the exact tests read.
-  Eigen::Matrix3d R_camera_world;
-  Eigen::Vector3d offset_camera_m;  ///< the query's origin in the camera frame
+  Eigen::Matrix3d R_camera_world = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d offset_camera_m = Eigen::Vector3d::Zero();  ///< the query's origin in the camera frame
   PinholeCamera pinhole;
   double near_m = 0;
   PoseMargin pose_margin;

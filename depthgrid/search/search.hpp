@@ -62,6 +62,8 @@ class Search {
   ~Search();
   Search(Search&&) noexcept;
   Search& operator=(Search&&) noexcept;
+  Search(const Search&) = delete;
+  Search& operator=(const Search&) = delete;
 
   /// Distances of many primitives. answers.size() should equal primitives.size(); answers without a primitive, and
   /// those of primitives that are not finite or have a negative radius, are not_evaluated. Primitives beside each

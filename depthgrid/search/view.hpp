@@ -38,6 +38,8 @@ class View {
   ~View();
   View(View&&) noexcept;
   View& operator=(View&&) noexcept;
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
 
   /// Takes a frame: normalises, subtracts the margin, applies the robot, the minimum filter and builds the pyramid.
   /// False when the frame is unusable (no data, another size or depth scale than the camera's, rows that overlap, half
