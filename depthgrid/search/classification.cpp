@@ -169,12 +169,10 @@ Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world
   }
   if (result.camera) {
     result.state = ProximityState::measured;
-  } else if (occluded) {
-    result.state = ProximityState::occluded;
+  } else if (occluded || (looks && !unmeasured)) {
+    result.state = ProximityState::occluded;  // where a camera looks and says nothing, none has seen it free either
   } else if (unmeasured) {
     result.state = ProximityState::unmeasured;
-  } else if (looks) {
-    result.state = ProximityState::occluded;  // a camera looks there, and none has seen it free
   }
   return result;
 }

@@ -17,10 +17,10 @@ namespace depthgrid::search {
 
 /// What is read.
 struct NewImage {
-  DepthView depth;  ///< with its stride
-  RobotView robot;  ///< with its stride
-  int reach_px;     ///< w
-  float pocket_m;   ///< ignored beyond the robot's exit, rounded towards zero
+  DepthView depth;     ///< with its stride
+  RobotView robot;     ///< with its stride
+  int reach_px = 0;    ///< w
+  float pocket_m = 0;  ///< ignored beyond the robot's exit, rounded towards zero
 };
 
 /// What is written; images are dense.

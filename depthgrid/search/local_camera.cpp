@@ -81,8 +81,9 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.space = is_principal && !local.has_reach ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};
   // Covered is what lies beyond the blind zone, its end excluded.
   constexpr double kBeyondM = 1e-9;
-  local.coverage = view_between(std::max(local.near_m + kBeyondM, is_principal ? frustum->d_min_m : 0.0),
-                                is_principal ? frustum->d_max_m : kInfinity);
+  const double from_m = local.near_m + kBeyondM;
+  local.coverage = is_principal ? view_between(std::max(from_m, frustum->d_min_m), frustum->d_max_m)
+                                : view_between(from_m, kInfinity);
   local.coverage.low_m = std::max(local.coverage.low_m, std::nextafter(local.blind_m, 1e30F));
 }
 

@@ -102,7 +102,7 @@ class PreparationRows {
   /// For the intermediate result of one row of texels.
   [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
 
-  FloatColumns columns;
+  FloatColumns columns;  // NOLINT(*-non-private-member-variables-in-classes): no invariant joins it to the rest
 
  private:
   static constexpr int kZero = 0;  ///< of both kinds

@@ -81,8 +81,8 @@ struct ViewStore::State {
     mutable std::array<std::atomic<std::uint32_t>, kMostSlots> references{};
   };
 
-  State(const Rig& rig_in, const Settings& settings_in, int held_snapshots)
-      : rig(checked(rig_in)), settings(settings_in), cameras(rig.cameras.size()) {
+  State(const Rig& rig_in, Settings settings_in, int held_snapshots)
+      : rig(checked(rig_in)), settings(std::move(settings_in)), cameras(rig.cameras.size()) {
     search::validate(settings, rig);
     if (held_snapshots < 1 || held_snapshots > kMostHeld) {
       fail("view store: held_snapshots is ", held_snapshots, ", must be between 1 and ", kMostHeld);
