@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "depthgrid/app/usage_error.hpp"
 #include "depthgrid/input/number_parsing.hpp"
@@ -84,17 +85,19 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
 }
 
 void refuse_search_options(const SearchOptions& options, const std::string& method) {
-  const char* given = options.unobserved         ? "--unobserved"
-                      : options.robot_pockets    ? "--robot-pockets"
-                      : options.ignored_pocket_m ? "--ignored-pocket"
-                      : options.v_max_m_s        ? "--v-max"
-                      : options.resolution_m     ? "--resolution"
-                      : options.box              ? "--box"
-                      : options.d_max_m          ? "--d-max"
-                      : options.budget_nodes     ? "--budget-nodes"
-                                                 : nullptr;
-  if (given != nullptr) {
-    fail_usage(given, " has no effect with --method ", method, "; use --method search");
+  const std::array<std::pair<bool, const char*>, 8> options_given{
+      {{options.unobserved.has_value(), "--unobserved"},
+       {options.robot_pockets.has_value(), "--robot-pockets"},
+       {options.ignored_pocket_m.has_value(), "--ignored-pocket"},
+       {options.v_max_m_s.has_value(), "--v-max"},
+       {options.resolution_m.has_value(), "--resolution"},
+       {options.box.has_value(), "--box"},
+       {options.d_max_m.has_value(), "--d-max"},
+       {options.budget_nodes.has_value(), "--budget-nodes"}}};
+  for (const auto& [given, name] : options_given) {
+    if (given) {
+      fail_usage(name, " has no effect with --method ", method, "; use --method search");
+    }
   }
 }
 
