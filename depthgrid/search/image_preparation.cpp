@@ -21,6 +21,7 @@ using Units = hn::CappedTag<std::uint16_t, 32>;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr int kCacheLine = 64 / sizeof(float);
 constexpr int kLargestReach = 16;  ///< as validate() of SensorMargin has it
 
 /// x (slope - curve x) - constant, see Reduction.
@@ -115,14 +116,16 @@ struct MetreReader {
   V lowest, highest, beyond_highest;
 };
 
-/// Keeps one row of 16-bit values, and makes codes of them.
-HWY_INLINE void decode_row(const Reading& reading, const std::uint16_t* HWY_RESTRICT from, int width_px,
-                           std::uint16_t* HWY_RESTRICT kept, std::uint16_t* HWY_RESTRICT codes) {
+/// Keeps one row of 16-bit values, and makes codes of them. `ahead_bytes`: how far behind this row is the
+/// one to ask for now.
+HWY_INLINE void decode_row(const Reading& reading, const std::uint16_t* HWY_RESTRICT from, std::ptrdiff_t ahead_bytes,
+                           int width_px, std::uint16_t* HWY_RESTRICT kept, std::uint16_t* HWY_RESTRICT codes) {
   const Units d;
   const Decoder decode(reading);
   for_columns({0, width_px}, lanes(d), [&](int u, const auto& part) HWY_ATTR {
     const auto read = part.load(d, from + u, std::uint16_t{0});
     part.stream(read, d, kept + u);
+    ask_for(from + u, ahead_bytes);
     hn::StoreU(decode(read), d, codes + u);
   });
 }
@@ -200,7 +203,12 @@ HWY_INLINE void narrow_columns(const Reading& reading, const std::uint16_t* cons
     }
     return;
   }
+  const std::ptrdiff_t pair_bytes = 2 * (second - first) * static_cast<std::ptrdiff_t>(sizeof(float));
   for (int u = columns.begin; u < columns.end; u += lanes(d)) {
+    for (int i = 0; i < lanes(d); i += kCacheLine) {
+      ask_for(first + u + i, pair_bytes);
+      ask_for(second + u + i, pair_bytes);
+    }
     const auto shared = minimum(1, count, u);
     convert(hn::Min(shared, hn::LoadU(d, rows[0] + u)), columns.end - u, first + u);
     convert(hn::Min(shared, hn::LoadU(d, rows[count] + u)), columns.end - u, second + u);
@@ -213,14 +221,18 @@ HWY_INLINE PixelRange robot_columns(const NewImage& image, int v) {
   constexpr int kStep = FloatColumns::kStep;
   const int width_px = image.depth.width_px;
   const float* near_m = image.robot.near_m + image.robot.stride_px * v;
+  const float* far_m = image.robot.far_m + image.robot.stride_px * v;
+  const std::ptrdiff_t ahead_bytes = 4 * image.robot.stride_px * static_cast<std::ptrdiff_t>(sizeof(float));
   int first = width_px;
   int last = -1;
-  for (int u = 0; u < width_px; u += lanes(d)) {
-    if (!hn::AllFalse(d, hn::Gt(load_some(d, near_m + u, width_px - u, 0.0F), hn::Zero(d)))) {
+  for_columns({0, width_px}, lanes(d), [&](int u, const auto& part) HWY_ATTR {
+    ask_for(near_m + u, ahead_bytes);
+    if (!hn::AllFalse(d, hn::Gt(part.load(d, near_m + u, 0.0F), hn::Zero(d)))) {
+      ask_for(far_m + u, 0);
       first = std::min(first, u);
       last = u + lanes(d) - 1;
     }
-  }
+  });
   return last < 0 ? PixelRange{} : PixelRange{first / kStep * kStep, std::min((last / kStep + 1) * kStep, width_px)};
 }
 
@@ -231,7 +243,7 @@ HWY_INLINE void reduce_row(D d_values, const Reader& reader, const Reduction& re
                            const hn::TFromD<D>* values, const PixelRange& columns, PreparationRows& rows) {
   const Floats d;
   const int width_px = image.depth.width_px;
-  const bool robot_here = !rows.columns.robot[static_cast<std::size_t>(v)].empty();
+  const bool robot_here = image.robot.near_m != nullptr && !rows.columns.robot(v).empty();
   const float* near_m = robot_here ? image.robot.near_m + image.robot.stride_px * v : nullptr;
   const float* far_m = robot_here ? image.robot.far_m + image.robot.stride_px * v : nullptr;
   float* reduced_m = rows.reduced_m();
@@ -313,6 +325,8 @@ HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& colum
     store_some(hn::IfThenElse(begins_free, hn::Max(free, far), free), d, free_row_m + u, count);
     const M island = hn::And(robot, hn::Gt(near, free));
     if (!hn::AllFalse(d, island)) {
+      ask_for(pixel_row(result.island_near_m, width_px, v + 2) + u, 0);
+      ask_for(pixel_row(result.island_far_m, width_px, v + 2) + u, 0);
       store_some(hn::IfThenElse(island, near, hn::Set(d, kInf)), d, pixel_row(result.island_near_m, width_px, v) + u,
                  count);
       store_some(hn::IfThenElse(island, far, hn::Set(d, -kInf)), d, pixel_row(result.island_far_m, width_px, v) + u,
@@ -353,12 +367,17 @@ class Passes {
         narrow_(kUnits && reading.ascending && image.reach_px > 0) {}
 
   HWY_INLINE PixelRange run() {
-    find_robot();
+    rows_.columns.begin(!narrow_);
     PixelRange island_rows;
     int next = 0;
+    int searched = 0;
     // Level 0 lags behind by three rows, whose texels cover the rows below them.
     for (int v = 0; v < height_px_ + 3; v += 2) {
       const int end = std::min(v + 2 + image_.reach_px, height_px_);
+      for (; image_.robot.near_m != nullptr && searched < std::min(end + rows_.columns.lookahead(), height_px_);
+           ++searched) {
+        rows_.columns.add_robot(searched, robot_columns(image_, searched));
+      }
       take(next, end);
       next = end;
       if (v < height_px_) {
@@ -370,34 +389,13 @@ class Passes {
   }
 
  private:
-  HWY_INLINE const PixelRange& at(const std::vector<PixelRange>& ranges, int v) const {
-    return ranges[static_cast<std::size_t>(v)];
-  }
-
-  HWY_INLINE void find_robot() {
-    FloatColumns& columns = rows_.columns;
-    bool some = false;
-    for (int v = 0; v < height_px_; ++v) {
-      PixelRange& robot = columns.robot[static_cast<std::size_t>(v)];
-      robot = image_.robot.near_m == nullptr ? PixelRange{} : robot_columns(image_, v);
-      some = some || !robot.empty();
-    }
-    if (!narrow_) {
-      columns.fill();
-    } else if (some) {
-      columns.spread();
-    } else {
-      columns.clear();
-    }
-  }
-
   /// Rows [begin, end) of the image. One pass over all of them after the other: a pass that reads what the one before
   /// has just written, but at other columns, waits until it has reached the cache.
   HWY_INLINE void take(int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const char* source = static_cast<const char*>(image_.depth.data) + image_.depth.stride_bytes * v;
       if constexpr (kUnits) {
-        decode_row(reading_, reinterpret_cast<const std::uint16_t*>(source), width_px_,
+        decode_row(reading_, reinterpret_cast<const std::uint16_t*>(source), 2 * image_.depth.stride_bytes, width_px_,
                    pixel_row(static_cast<std::uint16_t*>(result_.kept), width_px_, v), rows_.codes(v));
       } else {
         std::memcpy(pixel_row(static_cast<float*>(result_.kept), width_px_, v), source,
@@ -411,7 +409,7 @@ class Passes {
       narrow_window(rows_.narrow_minimum(v), width_px_, rows_.narrow_window(v));
     }
     for (int v = begin; v < end; ++v) {
-      const PixelRange& reduced = at(rows_.columns.reduced, v);
+      const PixelRange reduced = rows_.columns.reduced(v);
       if (reduced.empty()) {
         continue;
       }
@@ -422,17 +420,17 @@ class Passes {
         reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
                    pixel_row(static_cast<const float*>(result_.kept), width_px_, v), reduced, rows_);
       }
-      filter_row<kReach>(rows_.reduced_m(), at(rows_.columns.filtered, v), image_.reach_px, rows_.minimum_m(v));
+      filter_row<kReach>(rows_.reduced_m(), rows_.columns.filtered(v), image_.reach_px, rows_.minimum_m(v));
     }
   }
 
   /// The rows v and v + 1 of a result, where they exist, from minima of codes; what is done in single precision is left
   /// out if both rows have it.
-  template <int kCount, class RowOf>
+  template <int kCount, class RowOf, class FloatColumnsOf>
   HWY_INLINE void from_codes(const RowOf& row_of, int v, int reach_below, float* pixels,
-                             const std::vector<PixelRange>& in_floats) {
+                             const FloatColumnsOf& in_floats) {
     const auto exists = [&](int row) { return row >= 0 && row < height_px_; };
-    const auto floats = [&](int row) { return exists(row) ? at(in_floats, row) : PixelRange{0, width_px_}; };
+    const auto floats = [&](int row) { return exists(row) ? in_floats(row) : PixelRange{0, width_px_}; };
     const auto result = [&](int row) { return exists(row) ? pixel_row(pixels, width_px_, row) : nullptr; };
     const int count = 2 * image_.reach_px + 1 + reach_below;
     const std::uint16_t* rows[2 * kLargestReach + 5];
@@ -455,16 +453,16 @@ class Passes {
     PixelRange island_rows;
     if (narrow_) {
       from_codes<kReach == 0 ? 0 : 2 * kReach + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
-                                                   result_.free_m, rows_.columns.free);
+                                                   result_.free_m, [&](int row) { return rows_.columns.free(row); });
     }
     for (int row = v; row < std::min(v + 2, height_px_); ++row) {
       float* free_m = pixel_row(result_.free_m, width_px_, row);
-      filter_columns<kReach>(rows_, at(rows_.columns.free, row), image_.reach_px, row, free_m);
-      const PixelRange& robot = at(rows_.columns.robot, row);
+      filter_columns<kReach>(rows_, rows_.columns.free(row), image_.reach_px, row, free_m);
+      const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns.robot(row) : PixelRange{};
       if (!robot.empty() && join_robot(image_, row, robot, result_, free_m)) {
         island_rows = joined(island_rows, {row, row + 1});
       }
-      window_row(Smaller(), free_m, width_px_, at(rows_.columns.windows, row), rows_.window_m(row));
+      window_row(Smaller(), free_m, width_px_, rows_.columns.windows(row), rows_.window_m(row));
     }
     return island_rows;
   }
@@ -474,10 +472,10 @@ class Passes {
     float* level = result_.minima_m + result_.levels[0].offset;
     if (narrow_) {
       from_codes<kReach == 0 ? 0 : 2 * kReach + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
-                                                   rows_.columns.texels);
+                                                   [&](int row) { return rows_.columns.texels(row); });
     }
     for (int row = std::max(j, 0); row < std::min(j + 2, height_px_); ++row) {
-      first_level_row(rows_, at(rows_.columns.texels, row), row, pixel_row(level, width_px_, row));
+      first_level_row(rows_, rows_.columns.texels(row), row, pixel_row(level, width_px_, row));
       minimum_rows_above(result_.levels, row, rows_.scratch(), result_.minima_m);
     }
   }

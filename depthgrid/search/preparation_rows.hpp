@@ -29,29 +29,56 @@ struct PixelRange {
   return both.empty() ? PixelRange{} : both;
 }
 
-/// For each row of an image the columns in which the robot is, and those that therefore are worked out in single
-/// precision. All columns begin and end at multiples of kStep, or at the image's border, so that they do not depend on
-/// the length of vectors.
-struct FloatColumns {
+/// The columns of each row that are worked out in single precision because of the robot, w being the reach of the
+/// filter. All begin and end at multiples of kStep, or at the image's border, so that they do not depend on the length
+/// of vectors.
+class FloatColumns {
+ public:
   static constexpr int kStep = 16;
 
   FloatColumns(int width_px, int height_px, int reach_px);
 
-  /// After `robot` was filled in.
-  void spread() noexcept;
-  /// Everything, whatever `robot` is.
-  void fill() noexcept;
-  /// Nothing, and no robot.
-  void clear() noexcept;
+  /// Before the first row of an image. `everything`: all columns of all rows, wherever the robot is.
+  void begin(bool everything) noexcept;
+  /// Rows from row v on that a function may ask about are those up to here minus lookahead().
+  [[nodiscard]] int lookahead() const noexcept { return std::max(2 * reach_px_, reach_px_ + 3); }
+  /// Where row v shows the robot. Rows come in their order.
+  void add_robot(int v, const PixelRange& columns) noexcept;
+  [[nodiscard]] const PixelRange& robot(int v) const noexcept { return robot_[static_cast<std::size_t>(v)]; }
 
-  int width_px;
-  int reach_px;
-  std::vector<PixelRange> robot;     ///< the robot's interval is read here
-  std::vector<PixelRange> free;      ///< g depends on the robot
-  std::vector<PixelRange> filtered;  ///< minima along the row that `free` reads
-  std::vector<PixelRange> reduced;   ///< what those read
-  std::vector<PixelRange> texels;    ///< of level 0 that depend on `free`
-  std::vector<PixelRange> windows;   ///< minima along the row that `texels` read
+  /// g depends on the robot.
+  [[nodiscard]] PixelRange free(int v) const noexcept {
+    return around(v - reach_px_, v + reach_px_, reach_px_, reach_px_);
+  }
+  /// Minima along the row that free() reads.
+  [[nodiscard]] PixelRange filtered(int v) const noexcept {
+    return around(v - 2 * reach_px_, v + 2 * reach_px_, reach_px_, reach_px_);
+  }
+  /// What those read.
+  [[nodiscard]] PixelRange reduced(int v) const noexcept {
+    return around(v - 2 * reach_px_, v + 2 * reach_px_, 2 * reach_px_ + kStep, 2 * reach_px_ + kStep);
+  }
+  /// Texels of level 0 that depend on free().
+  [[nodiscard]] PixelRange texels(int v) const noexcept {
+    return around(v - reach_px_, v + 3 + reach_px_, reach_px_ + 3 + kStep, reach_px_);
+  }
+  /// Minima along the row that texels() reads.
+  [[nodiscard]] PixelRange windows(int v) const noexcept {
+    return around(v - 3 - reach_px_, v + 3 + reach_px_, reach_px_ + 3 + kStep, reach_px_);
+  }
+
+ private:
+  /// The robot's columns in the rows from first to last, wider by `left` and `right` and then up to multiples of kStep.
+  /// Whoever widens what was widened before adds a kStep.
+  [[nodiscard]] PixelRange around(int first, int last, int left, int right) const noexcept;
+
+  int width_px_;
+  int height_px_;
+  int reach_px_;
+  bool everything_ = false;
+  int first_robot_row_ = 0;
+  int last_robot_row_ = -1;
+  std::vector<PixelRange> robot_;
 };
 
 /// Rows of 16-bit values, or floats: with room for a vector and for neighbours before and behind.
@@ -102,7 +129,7 @@ class PreparationRows {
   /// For the intermediate result of one row of texels.
   [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
 
-  FloatColumns columns;  // NOLINT(*-non-private-member-variables-in-classes): no invariant joins it to the rest
+  FloatColumns columns;
 
  private:
   static constexpr int kZero = 0;  ///< of both kinds

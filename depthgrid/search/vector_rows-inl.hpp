@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -25,6 +26,15 @@ using M = hn::Mask<Floats>;
 template <class D>
 HWY_INLINE int lanes(D d) {
   return static_cast<int>(hn::Lanes(d));
+}
+
+/// Brings memory that is read or written soon into the second cache: a store that misses all caches would hold up those
+/// behind it. There need not be anything.
+HWY_INLINE void ask_for([[maybe_unused]] const void* memory, [[maybe_unused]] std::ptrdiff_t bytes_further) {
+#if HWY_COMPILER_GCC || HWY_COMPILER_CLANG
+  const auto address = reinterpret_cast<std::uintptr_t>(memory) + static_cast<std::uintptr_t>(bytes_further);
+  __builtin_prefetch(reinterpret_cast<const void*>(address), 0, 2);
+#endif
 }
 
 /// `count` values from memory that ends there, the rest filled.
