@@ -35,10 +35,9 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.offset_camera_m = local.R_camera_world * (origin_world - T_world_camera.translation());
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
-      local.rotation[static_cast<std::size_t>(3 * row + column)] =
-          static_cast<float>(local.R_camera_world(row, column));
-      local.absolute_rotation[static_cast<std::size_t>(3 * row + column)] =
-          up(std::abs(local.R_camera_world(row, column)));
+      const std::size_t at = 3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
+      local.rotation[at] = static_cast<float>(local.R_camera_world(row, column));
+      local.absolute_rotation[at] = up(std::abs(local.R_camera_world(row, column)));
     }
     local.offset_m[static_cast<std::size_t>(row)] = static_cast<float>(local.offset_camera_m(row));
   }

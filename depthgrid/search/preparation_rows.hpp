@@ -129,7 +129,8 @@ class PreparationRows {
   /// For the intermediate result of one row of texels.
   [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
 
-  FloatColumns columns;
+  // No invariant joins it to the rest.
+  FloatColumns columns;  // NOLINT
 
  private:
   static constexpr int kZero = 0;  ///< of both kinds
