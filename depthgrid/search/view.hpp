@@ -57,6 +57,7 @@ class View {
   [[nodiscard]] float measured_m(int u, int v) const noexcept;
   /// A pixel's frustum is free between the blind zone and this depth: g, and where the pixel's robot interval
   /// [near, far] begins at or before g and ends behind it, that far end (what lies in the interval is the robot).
+  /// Never above the exact g, and below it by less than 2^-20 of the depths that it is made of (1 um a metre).
   [[nodiscard]] const DepthImage& free_m() const noexcept { return free_m_; }
   /// Minima of free_m(), all levels.
   [[nodiscard]] const float* minima_m() const noexcept { return minima_m_.data(); }
