@@ -17,6 +17,8 @@ set(depthgrid_package_of_Threads::Threads Threads)
 set(depthgrid_package_of_ZLIB::ZLIB ZLIB)
 set(depthgrid_package_of_PNG::PNG PNG)
 set(depthgrid_package_of_hwy::hwy hwy)
+set(depthgrid_package_of_embree "embree 3")
+set(depthgrid_package_of_fcl fcl)
 set(depthgrid_package_of_PkgConfig::CAIRO "pkg-config CAIRO cairo")
 
 set(depthgrid_components "")
