@@ -50,6 +50,15 @@ HWY_INLINE void texel_row(const Extremum& extremum, const float* upper, const fl
   });
 }
 
+/// Row j of a level from the level below it.
+template <class Extremum>
+HWY_INLINE void row_above(const Extremum& extremum, const PyramidLevel& from, const PyramidLevel& to, int j,
+                          const PixelRange& columns, float* scratch, float* texels) {
+  const float* upper = texels + from.offset + std::ptrdiff_t{2} * j * from.width;
+  const float* lower = 2 * j + 4 < from.height ? upper + std::ptrdiff_t{4} * from.width : upper;
+  texel_row(extremum, upper, lower, from.width, columns, scratch, texels + to.offset + std::ptrdiff_t{j} * to.width);
+}
+
 /// Row j of level l is there.
 void rows_above(const std::vector<PyramidLevel>& levels, std::size_t l, int j, float* scratch, float* texels) {
   if (l + 1 == levels.size()) {
@@ -61,10 +70,7 @@ void rows_above(const std::vector<PyramidLevel>& levels, std::size_t l, int j, f
   const auto ready = [](int last_row) { return std::max(last_row / 2 - 1, 0); };
   const int end = j + 1 == level.height ? next.height : ready(j);
   for (int row = ready(j - 1); row < end; ++row) {
-    const float* upper = texels + level.offset + std::ptrdiff_t{2} * row * level.width;
-    const float* lower = 2 * row + 4 < level.height ? upper + std::ptrdiff_t{4} * level.width : upper;
-    texel_row(Smaller(), upper, lower, level.width, {0, next.width}, scratch,
-              texels + next.offset + std::ptrdiff_t{row} * next.width);
+    row_above(Smaller(), level, next, row, {0, next.width}, scratch, texels);
     rows_above(levels, l + 1, row, scratch, texels);
   }
 }
@@ -73,11 +79,14 @@ void minimum_rows_above(const std::vector<PyramidLevel>& levels, int j, float* s
   rows_above(levels, 0, j, scratch, texels);
 }
 
-/// One row of level 0: the extremum of four by four pixels.
+/// Row j of level 0 from the image: the extremum of four by four pixels.
 template <class Extremum>
-HWY_INLINE void first_row(const Extremum& extremum, const float* image_row, int row_count, int width_px,
+HWY_INLINE void first_row(const Extremum& extremum, const float* image, const PyramidLevel& level, int j,
                           const PixelRange& columns, float* scratch, float* texels) {
   const Floats d;
+  const int width_px = level.width;
+  const float* image_row = image + std::ptrdiff_t{j} * width_px;
+  const int row_count = std::min(4, level.height - j);
   for (int u = columns.begin; u < std::min(columns.end + 3, width_px); u += lanes(d)) {
     V best = load_some(d, image_row + u, width_px - u, Extremum::kNeutral);
     for (int row = 1; row < row_count; ++row) {
@@ -86,7 +95,7 @@ HWY_INLINE void first_row(const Extremum& extremum, const float* image_row, int 
     }
     hn::StoreU(best, d, scratch + u);
   }
-  window_row(extremum, scratch, width_px, columns, texels);
+  window_row(extremum, scratch, width_px, columns, texels + level.offset + std::ptrdiff_t{j} * width_px);
 }
 
 /// Texels that cover only columns of this range: those from `step` i to `step` i + 3 or so, as far as there are
@@ -109,6 +118,20 @@ HWY_INLINE void clear_row(const PixelRange& old, const PixelRange& now, float va
   }
 }
 
+/// Texels of row j that may hold islands: those that cover islands only, in the rows of the image (level 0) or of the
+/// level below, of which we know the columns that have some.
+HWY_INLINE PixelRange island_texels(bool from_image, int j, const PyramidLevel& below,
+                                    const PixelRange* below_columns) {
+  const int step = from_image ? 1 : 2;
+  const int reach = from_image ? 3 : 4;
+  const int first = step * j;
+  PixelRange all = below_columns[first];
+  for (int row = first; row < std::min(first + reach + 1, below.height); row += from_image ? 1 : 4) {
+    all = common(all, below_columns[row]);
+  }
+  return texels_within(all, step, reach, below.width);
+}
+
 void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float* near_m, const float* far_m,
                            const std::vector<PixelRange>& image_columns, float* scratch, float* near_maxima_m,
                            float* far_minima_m, std::vector<PixelRange>& texel_columns) {
@@ -118,14 +141,7 @@ void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float*
     const PyramidLevel& level = levels[l];
     const PyramidLevel& below = levels[l == 0 ? 0 : l - 1];
     for (int j = 0; j < level.height; ++j) {
-      // A texel is an island only if all that it covers is: its rows have islands in all of its columns.
-      const int first = l == 0 ? j : 2 * j;
-      const int end = std::min(first + (l == 0 ? 4 : 5), below.height);
-      PixelRange all = below_columns[first];
-      for (int row = first; row < end; row += l == 0 ? 1 : 4) {
-        all = common(all, below_columns[row]);
-      }
-      const PixelRange now = l == 0 ? texels_within(all, 1, 3, below.width) : texels_within(all, 2, 4, below.width);
+      const PixelRange now = island_texels(l == 0, j, below, below_columns);
       const std::ptrdiff_t offset = level.offset + std::ptrdiff_t{j} * level.width;
       clear_row(columns[j], now, Smaller::kNeutral, near_maxima_m + offset);
       clear_row(columns[j], now, Larger::kNeutral, far_minima_m + offset);
@@ -133,17 +149,13 @@ void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float*
       if (now.empty()) {
         continue;
       }
-      const std::ptrdiff_t below_offset = (l == 0 ? 0 : below.offset) + std::ptrdiff_t{first} * below.width;
       if (l == 0) {
-        first_row(Larger(), near_m + below_offset, end - first, level.width, now, scratch, near_maxima_m + offset);
-        first_row(Smaller(), far_m + below_offset, end - first, level.width, now, scratch, far_minima_m + offset);
-        continue;
+        first_row(Larger(), near_m, level, j, now, scratch, near_maxima_m);
+        first_row(Smaller(), far_m, level, j, now, scratch, far_minima_m);
+      } else {
+        row_above(Larger(), below, level, j, now, scratch, near_maxima_m);
+        row_above(Smaller(), below, level, j, now, scratch, far_minima_m);
       }
-      const std::ptrdiff_t lower = first + 4 < below.height ? std::ptrdiff_t{4} * below.width : 0;
-      const float* near_below = near_maxima_m + below_offset;
-      const float* far_below = far_minima_m + below_offset;
-      texel_row(Larger(), near_below, near_below + lower, below.width, now, scratch, near_maxima_m + offset);
-      texel_row(Smaller(), far_below, far_below + lower, below.width, now, scratch, far_minima_m + offset);
     }
     below_columns = columns;
     columns += level.height;

@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -23,16 +24,30 @@ using Floats = hn::CappedTag<float, 16>;
 using V = hn::Vec<Floats>;
 using M = hn::Mask<Floats>;
 
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kLargest = std::numeric_limits<float>::max();
+constexpr int kLargestReach = 16;  ///< as validate() of SensorMargin has it
+
 template <class D>
 HWY_INLINE int lanes(D d) {
   return static_cast<int>(hn::Lanes(d));
 }
+
+template <class Value>
+HWY_INLINE Value* pixel_row(Value* pixels, int width_px, int v) {
+  return pixels + std::ptrdiff_t{width_px} * v;
+}
+
+/// Room for one vector.
+template <class Value>
+using VectorArray = std::array<Value, HWY_MAX_BYTES / sizeof(Value)>;
 
 /// Brings memory that is read or written soon into the second cache: a store that misses all caches would hold up those
 /// behind it. There need not be anything.
 HWY_INLINE void ask_for([[maybe_unused]] const void* memory, [[maybe_unused]] std::ptrdiff_t bytes_further) {
 #if HWY_COMPILER_GCC || HWY_COMPILER_CLANG
   const auto address = reinterpret_cast<std::uintptr_t>(memory) + static_cast<std::uintptr_t>(bytes_further);
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): a pointer may not point there
   __builtin_prefetch(reinterpret_cast<const void*>(address), 0, 2);
 #endif
 }
@@ -43,10 +58,10 @@ HWY_INLINE hn::Vec<D> load_some(D d, const hn::TFromD<D>* from, int count, hn::T
   if (count >= lanes(d)) {
     return hn::LoadU(d, from);
   }
-  HWY_ALIGN hn::TFromD<D> values[HWY_MAX_BYTES / sizeof(hn::TFromD<D>)];
-  std::fill_n(values, lanes(d), fill);
-  std::copy_n(from, std::max(count, 0), values);
-  return hn::Load(d, values);
+  HWY_ALIGN VectorArray<hn::TFromD<D>> values{};
+  values.fill(fill);
+  std::copy_n(from, std::max(count, 0), values.begin());
+  return hn::Load(d, values.data());
 }
 
 template <class D>
@@ -55,9 +70,9 @@ HWY_INLINE void store_some(hn::Vec<D> v, D d, hn::TFromD<D>* to, int count) {
     hn::StoreU(v, d, to);
     return;
   }
-  HWY_ALIGN hn::TFromD<D> values[HWY_MAX_BYTES / sizeof(hn::TFromD<D>)];
-  hn::Store(v, d, values);
-  std::copy_n(values, std::max(count, 0), to);
+  HWY_ALIGN VectorArray<hn::TFromD<D>> values{};
+  hn::Store(v, d, values.data());
+  std::copy_n(values.begin(), std::max(count, 0), to);
 }
 
 /// Some of a row's values, or all of a vector.
