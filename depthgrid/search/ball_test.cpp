@@ -6,17 +6,13 @@
 #include <limits>
 
 #include "depthgrid/core/pixel_frustum.hpp"
+#include "depthgrid/search/ball_scan.hpp"
 
 namespace depthgrid::search {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGuard = 1e-9;
-
-/// Pixels, inclusive.
-struct Window {
-  int u0, v0, u1, v1;
-};
 
 /// A ball in one camera's frame and the piece of the image that it can touch.
 struct Ball {
@@ -156,6 +152,14 @@ bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Ve
     return false;  // only with to_view: outside the image nothing counts
   }
   const Ball ball{camera, clip, p_camera, radius_m, radius_m * radius_m};
+  if (p_camera.z() - radius_m > camera.near_m && p_camera.z() > radius_m && can_scan(camera, window)) {
+    // Guarded twice: the position's rounding, and that of distances from it.
+    const Eigen::Vector3f p = p_camera.cast<float>();
+    const ScannedBall scanned{p.x(), p.y(), p.z(), static_cast<float>(radius_m) + 2 * camera.guard_m, window};
+    return scan(
+        camera, scanned,
+        [](const void* context, int u, int v) { return static_cast<const Ball*>(context)->meets_pixel(u, v); }, &ball);
+  }
   const int side = std::max(window.u1 - window.u0, window.v1 - window.v0);
   int level = 0;
   while ((1 << level) < side && level < camera.level_count + 1) {
