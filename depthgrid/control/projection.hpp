@@ -1,0 +1,85 @@
+// The point of a polyhedron that is nearest to a given one: the quadratic programme behind the optimal saturation.
+//
+//   minimise |x - wanted|^2   subject to   E x = e,   lower <= x <= upper,   A x <= b
+//
+// Goldfarb and Idnani's dual active set method (Mathematical Programming 27, 1983) for a Hessian of one: it begins at
+// `wanted`, takes the equalities in, then the worst violation after the other, and lets go of what no longer holds it.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "depthgrid/control/joints.hpp"
+
+namespace depthgrid::control {
+
+/// Most variables: the joints and the scale of a task.
+inline constexpr int kMostVariables = kMostJoints + 1;
+/// Most general inequalities: one for each point of the body.
+inline constexpr int kMostInequalities = 32;
+
+enum class ProjectionStatus : std::uint8_t {
+  solved,
+  infeasible,  ///< no point satisfies all constraints (to 1e-9 of their scale)
+  gave_up,     ///< more steps than a few for every constraint: not met in any test
+};
+
+/// One problem and the scratch memory to solve it. Rows of E and A should be of a length near one. Not for two threads
+/// at once; solve() does not allocate, lock or throw.
+class Projection {
+ public:
+  using Variables = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostVariables, 1>;
+  using EqualityRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor,
+                                     kMostVariables, kMostVariables>;
+  using InequalityRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor,
+                                       kMostInequalities, kMostVariables>;
+  using InequalityValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostInequalities, 1>;
+
+  // The problem, all sizes consistent; lower <= upper, everything finite.
+  Variables wanted;
+  EqualityRows equality;
+  Variables equality_value;
+  Variables lower;
+  Variables upper;
+  InequalityRows inequality;
+  InequalityValues inequality_value;
+
+  /// No rows, bounds of zero width at 0.
+  void resize(int variables);
+
+  [[nodiscard]] ProjectionStatus solve() noexcept;
+
+  /// The answer of the last solve() that was solved.
+  [[nodiscard]] const Variables& solution() const noexcept { return x_; }
+  /// Active set changes of the last solve().
+  [[nodiscard]] int steps() const noexcept { return steps_; }
+
+ private:
+  /// Constraints are numbered: lower bounds, upper bounds, inequalities. kEquality stands for any equality.
+  static constexpr int kEquality = -1;
+
+  [[nodiscard]] ProjectionStatus take_equalities() noexcept;
+  [[nodiscard]] int most_violated() const noexcept;
+  [[nodiscard]] ProjectionStatus satisfy(int constraint, int most_steps) noexcept;
+  [[nodiscard]] Variables normal_of(int constraint) const noexcept;
+  [[nodiscard]] double slack_of(int constraint) const noexcept;
+  void activate(int constraint) noexcept;
+  void release(int place) noexcept;
+  void rotate_basis(int column, double c, double s) noexcept;
+
+  using Square =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostVariables, kMostVariables>;
+  Variables x_;
+  Square basis_;     ///< orthogonal; its first `active_` columns span the active normals
+  Square triangle_;  ///< the active normals in that basis
+  Variables d_;      ///< the normal at hand in that basis
+  Variables multiplier_;
+  std::array<int, kMostVariables> constraint_at_{};
+  std::array<bool, 2 * kMostVariables + kMostInequalities> is_active_{};
+  int active_ = 0;
+  int equalities_ = 0;
+  int steps_ = 0;
+};
+
+}  // namespace depthgrid::control
