@@ -1,0 +1,51 @@
+#include "depthgrid/robot/robot_at_exposure.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/robot/motion_padding.hpp"
+
+namespace depthgrid::robot {
+
+RobotAtExposure::RobotAtExposure(const RobotModel& model, const JointHistory& history, const PinholeCamera& camera,
+                                 std::vector<LinkCapsule> capsules, const ExposureSettings& settings)
+    : model_(model),
+      history_(history),
+      settings_(settings),
+      removal_(camera, std::move(capsules), settings.removal),
+      q_(model.joints().size()),
+      T_world_link_(model.links().size(), Pose::Identity()),
+      motion_m_(removal_.capsules().size()) {
+  if (!(std::isfinite(settings_.time_error_s) && settings_.time_error_s >= 0)) {
+    fail(model.source(), ": the error of time is ", settings_.time_error_s, " s, must be finite and not negative");
+  }
+  if (settings_.joint_speeds.empty()) {
+    for (const Joint& joint : model.joints()) {
+      settings_.joint_speeds.push_back(joint.max_speed);
+    }
+  }
+  if (settings_.joint_speeds.size() != model.joints().size()) {
+    fail(model.source(), ": ", settings_.joint_speeds.size(), " joint speeds for ", model.joints().size(), " joints");
+  }
+  for (std::size_t j = 0; j < settings_.joint_speeds.size(); ++j) {
+    if (!(std::isfinite(settings_.joint_speeds[j]) && settings_.joint_speeds[j] >= 0)) {
+      fail(model.source(), ": joint '", model.joints()[j].name, "': its speed is ", settings_.joint_speeds[j],
+           ", must be finite and not negative; state joint_speeds where the model has no limit");
+    }
+  }
+}
+
+ExposedRobot RobotAtExposure::find(double time_s, const Pose& T_world_camera, const DepthView* reading) noexcept {
+  ExposedRobot result;
+  result.joints = history_.at(time_s, q_);
+  if (!result.joints.known() || !model_.link_poses(q_, settings_.T_world_base, T_world_link_)) {
+    return result;
+  }
+  motion_padding(model_, removal_.capsules(), T_world_link_, settings_.joint_speeds,
+                 settings_.time_error_s + result.joints.time_error_s, motion_m_);
+  result.view = removal_.find(T_world_link_, T_world_camera, motion_m_, reading);
+  return result;
+}
+
+}  // namespace depthgrid::robot

@@ -1,0 +1,56 @@
+// From the time of an exposure to the robot in the image: joint history, kinematics, padding for time, removal.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "depthgrid/core/frame.hpp"
+#include "depthgrid/robot/joint_history.hpp"
+#include "depthgrid/robot/robot_model.hpp"
+#include "depthgrid/robot/robot_removal.hpp"
+
+namespace depthgrid::robot {
+
+struct ExposureSettings {
+  Pose T_world_base = Pose::Identity();
+  RemovalSettings removal;
+  /// How far the exposure's time may be from the joints' clock, half the exposure included.
+  double time_error_s = 0;
+  /// Greatest speeds within that time, rad/s or m/s, one a joint; empty: the model's limits.
+  std::vector<double> joint_speeds;
+};
+
+/// The robot in one image.
+struct ExposedRobot {
+  JointsAtTime joints;  ///< where the positions come from
+  RobotView view;       ///< for Frame::robot; without robot where the positions are not known
+};
+
+/// One camera's robot. Model and history must outlive it. One thread at a time; allocates in its constructor only.
+class RobotAtExposure {
+ public:
+  /// Throws Error as RobotRemoval does, when the time error or a speed is negative or not finite, or there is not one
+  /// speed a joint. A model without a speed limit needs joint_speeds.
+  RobotAtExposure(const RobotModel& model, const JointHistory& history, const PinholeCamera& camera,
+                  std::vector<LinkCapsule> capsules, const ExposureSettings& settings);
+
+  /// The image is exposed about time_s, on the history's clock. `reading`: that image, or null (RobotRemoval::find). The
+  /// padding grows with joints.time_error_s. The view is good until the next call.
+  [[nodiscard]] ExposedRobot find(double time_s, const Pose& T_world_camera,
+                                  const DepthView* reading = nullptr) noexcept;
+
+  /// As of the last call that found the positions.
+  [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
+  [[nodiscard]] std::span<const double> motion_m() const noexcept { return motion_m_; }
+
+ private:
+  const RobotModel& model_;
+  const JointHistory& history_;
+  ExposureSettings settings_;
+  RobotRemoval removal_;
+  std::vector<double> q_;
+  std::vector<Pose> T_world_link_;
+  std::vector<double> motion_m_;
+};
+
+}  // namespace depthgrid::robot
