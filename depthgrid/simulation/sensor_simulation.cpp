@@ -1,0 +1,187 @@
+#include "depthgrid/simulation/sensor_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/core/sensor_models.hpp"
+#include "depthgrid/simulation/pixel_random.hpp"
+#include "depthgrid/simulation/second_view.hpp"
+#include "depthgrid/simulation/surface_slant.hpp"
+
+namespace depthgrid::simulation {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+enum Stream : std::uint64_t { kLateral = 1, kAxial, kDropout, kVibration, kBias };
+
+void require(bool holds, const SensorSimulation& sensor, const char* what, double value) {
+  if (!holds) {
+    fail("simulation of sensor '", sensor.name, "': ", what, " is ", value, ", out of range");
+  }
+}
+
+void validate(const SensorSimulation& s) {
+  const auto not_negative = [&s](const char* what, double value) {
+    require(std::isfinite(value) && value >= 0, s, what, value);
+  };
+  const auto share = [&s](const char* what, double value) { require(value >= 0 && value <= 1, s, what, value); };
+  not_negative("noise_constant_m", s.noise_constant_m);
+  not_negative("noise_quadratic_per_m", s.noise_quadratic_per_m);
+  not_negative("noise_origin_m", s.noise_origin_m);
+  not_negative("noise_slant", s.noise_slant);
+  not_negative("lateral_px", s.lateral_px);
+  not_negative("lateral_slant_px", s.lateral_slant_px);
+  not_negative("lateral_limit_px", s.lateral_limit_px);
+  not_negative("step_per_m", s.step_per_m);
+  not_negative("bias_constant_m", s.bias_constant_m);
+  not_negative("bias_linear", s.bias_linear);
+  not_negative("baseline_m", s.baseline_m);
+  not_negative("near_m", s.near_m);
+  not_negative("vibration_px", s.vibration_px);
+  share("flying_share", s.flying_share);
+  share("dropout_share", s.dropout_share);
+  require(s.patch_px >= 1, s, "patch_px", s.patch_px);
+  require(s.far_m > s.near_m, s, "far_m", s.far_m);
+  require(s.largest_slant_rad > 0, s, "largest_slant_rad", s.largest_slant_rad);
+}
+
+/// Whether the slant of the surface decides anything.
+bool asks_slant(const SensorSimulation& s) {
+  return s.noise_slant > 0 || s.lateral_slant_px > 0 || s.largest_slant_rad < kPi / 2;
+}
+
+/// theta / (pi/2 - theta), which grows without limit towards grazing views.
+double steepness(double slant_rad) { return slant_rad / std::max(1e-3, kPi / 2 - slant_rad); }
+
+/// Between -1 and 1 in every pixel, with half a wave to a whole one across the image, another for each seed.
+std::vector<float> smooth_pattern(const PinholeCamera& camera, std::uint64_t seed) {
+  const PixelRandom random(seed, 0, kBias);
+  const auto wave = [&random](std::uint64_t n, double share) {
+    return std::cos(kPi * (1 + random.uniform(n)) * share + 2 * kPi * random.uniform(n + 1));
+  };
+  std::vector<float> pattern;
+  for (int v = 0; v < camera.height_px; ++v) {
+    const double down = wave(0, static_cast<double>(v) / camera.height_px);
+    for (int u = 0; u < camera.width_px; ++u) {
+      pattern.push_back(static_cast<float>(down * wave(2, static_cast<double>(u) / camera.width_px)));
+    }
+  }
+  return pattern;
+}
+
+}  // namespace
+
+double noise_sigma_m(const SensorSimulation& s, double depth_m, double slant_rad) noexcept {
+  const double beyond = depth_m - s.noise_origin_m;
+  const double steep = steepness(slant_rad);
+  return s.noise_constant_m + s.noise_quadratic_per_m * beyond * beyond +
+         s.noise_slant / std::sqrt(depth_m) * steep * steep;
+}
+
+/// The ideal pixel that a pixel shows.
+struct SimulatedSensor::Source {
+  int u;
+  int v;
+  double slant_rad;
+};
+
+SimulatedSensor::SimulatedSensor(SensorSimulation sensor, const PinholeCamera& camera, std::uint64_t seed)
+    : sensor_(std::move(sensor)), camera_(camera), seed_(seed) {
+  depthgrid::validate(camera_);
+  validate(sensor_);
+  hidden_.resize(static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px));
+  if (sensor_.bias_constant_m > 0 || sensor_.bias_linear > 0) {
+    bias_ = smooth_pattern(camera_, seed_);
+  }
+}
+
+double SimulatedSensor::reading_m(const DepthImage& ideal_m, const Source& source, std::uint64_t dice) const noexcept {
+  const SensorSimulation& s = sensor_;
+  double z = ideal_m.at(source.u, source.v);
+  if (s.flying_share > 0) {
+    const EdgeDepths edge = depths_around(ideal_m, source.u, source.v);
+    if (edge.is_edge() && uniform_of(scrambled(dice), 0) < s.flying_share) {
+      z = edge.near_m + uniform_of(scrambled(dice), 1) * (edge.far_m - edge.near_m);
+    }
+  }
+  z += noise_sigma_m(s, z, source.slant_rad) * normal_of(dice, 0);
+  if (!bias_.empty()) {
+    z += (s.bias_constant_m + s.bias_linear * z) * bias_[ideal_m.index(source.u, source.v)];
+  }
+  if (s.step_per_m > 0 && z > 0) {
+    const double steps = std::round(1 / (z * s.step_per_m));
+    z = steps > 0 ? 1 / (steps * s.step_per_m) : 0;
+  }
+  return z;
+}
+
+void SimulatedSensor::measure(const DepthImage& ideal_m, std::uint64_t frame, DepthImage& measured_m) {
+  if (ideal_m.width_px() != camera_.width_px || ideal_m.height_px() != camera_.height_px) {
+    fail("ideal image is ", ideal_m.width_px(), " x ", ideal_m.height_px(), " px, must be the camera's ",
+         camera_.width_px, " x ", camera_.height_px);
+  }
+  if (measured_m.width_px() != camera_.width_px || measured_m.height_px() != camera_.height_px) {
+    measured_m = DepthImage(camera_.width_px, camera_.height_px);
+  }
+  const SensorSimulation& s = sensor_;
+  std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
+  if (s.baseline_m > 0) {
+    mark_hidden_from_second_view(camera_, ideal_m, s.baseline_m, hidden_);
+  }
+  const PixelRandom lateral(seed_, frame, kLateral);
+  const PixelRandom axial(seed_, frame, kAxial);
+  const PixelRandom dropout(seed_, frame, kDropout);
+  const std::uint64_t shake = PixelRandom(seed_, frame, kVibration).bits(0);
+  const double shake_u = s.vibration_px * (2 * uniform_of(shake, 0) - 1) / std::numbers::sqrt2;
+  const double shake_v = s.vibration_px * (2 * uniform_of(shake, 1) - 1) / std::numbers::sqrt2;
+  const bool slanted = asks_slant(s);
+  const bool displaced = s.lateral_px > 0 || s.lateral_slant_px > 0 || s.vibration_px > 0;
+  for (int v = 0; v < camera_.height_px; ++v) {
+    for (int u = 0; u < camera_.width_px; ++u) {
+      const std::uint64_t patch = ideal_m.index(u / s.patch_px, v / s.patch_px);
+      const std::uint64_t aside = lateral.bits(patch);
+      Source source{u, v, slanted ? surface_slant_rad(camera_, ideal_m, u, v) : 0.0};
+      if (displaced) {
+        const double sigma_px = s.lateral_px + s.lateral_slant_px * steepness(source.slant_rad);
+        const auto offset = [&s, sigma_px, aside](unsigned n) {
+          return std::clamp(sigma_px * normal_of(aside, n), -s.lateral_limit_px, s.lateral_limit_px);
+        };
+        source.u = std::clamp(static_cast<int>(std::lround(u + offset(0) + shake_u)), 0, camera_.width_px - 1);
+        source.v = std::clamp(static_cast<int>(std::lround(v + offset(1) + shake_v)), 0, camera_.height_px - 1);
+        source.slant_rad = slanted ? surface_slant_rad(camera_, ideal_m, source.u, source.v) : 0.0;
+      }
+      float& measured = measured_m.at(u, v);
+      measured = 0;
+      if (!(ideal_m.at(source.u, source.v) > 0) || hidden_[ideal_m.index(source.u, source.v)] != 0 ||
+          source.slant_rad > s.largest_slant_rad) {
+        continue;
+      }
+      if (s.dropout_share > 0 && dropout.uniform(ideal_m.index(u, v)) < s.dropout_share) {
+        continue;
+      }
+      const double z = reading_m(ideal_m, source, axial.bits(patch));
+      measured = z > 0 && z >= s.near_m && z <= s.far_m ? static_cast<float>(z) : 0.0F;
+    }
+  }
+}
+
+std::vector<std::uint16_t> in_units(const DepthImage& depth_m, double metres_per_unit) {
+  if (!(metres_per_unit > 0)) {
+    fail("metres per unit is ", metres_per_unit, ", must be positive");
+  }
+  constexpr double kLargest = 65534;  // 65535 means saturated
+  const std::size_t pixels =
+      static_cast<std::size_t>(depth_m.width_px()) * static_cast<std::size_t>(depth_m.height_px());
+  std::vector<std::uint16_t> units(pixels);
+  std::transform(depth_m.data(), depth_m.data() + pixels, units.begin(), [metres_per_unit](float z) {
+    const double steps = std::round(z / metres_per_unit);
+    return steps > 0 && steps <= kLargest ? static_cast<std::uint16_t>(steps) : std::uint16_t{0};
+  });
+  return units;
+}
+
+}  // namespace depthgrid::simulation
