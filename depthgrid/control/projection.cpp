@@ -11,7 +11,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A normal of length one that sticks out of the active ones by less than this depends on them.
 constexpr double kDependent = 1e-9;
 /// A constraint that is violated by less than this holds.
-constexpr double kHolds = 1e-11;
+constexpr double kHolds = 1e-9;
+/// One that the others decide holds when it is violated by less than this.
+constexpr double kStuck = 1e-8;
 /// An equality that depends on others may be off by this.
 constexpr double kConsistent = 1e-9;
 
@@ -162,7 +164,11 @@ ProjectionStatus Projection::satisfy(int constraint, int most_steps) noexcept {
     const double primal_step = movable ? -slack_of(constraint) / length_squared : kInfinity;
     const double step = std::min(primal_step, dual_step);
     if (step == kInfinity) {
-      return ProjectionStatus::infeasible;
+      if (slack_of(constraint) < -kStuck) {
+        return ProjectionStatus::infeasible;
+      }
+      is_active_[static_cast<std::size_t>(constraint)] = true;  // rounding: it holds as well as it can
+      return ProjectionStatus::solved;
     }
     multiplier_.head(active_) -= step * r;
     multiplier += step;
