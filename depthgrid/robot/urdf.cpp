@@ -144,7 +144,8 @@ RobotDescription parse_urdf(const std::string& text, const std::filesystem::path
     }
     errors = messages.errors() + (messages.errors().empty() || errors.empty() ? "" : "; ") + errors;
   }
-  if (!model) {
+  // It leaves out a shape that it cannot read, says so, and goes on: the robot would be smaller than it is.
+  if (!model || !errors.empty()) {
     fail(context, "no robot can be read: ", errors.empty() ? "it is no URDF" : errors);
   }
   RobotDescription result;
