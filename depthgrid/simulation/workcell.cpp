@@ -61,6 +61,14 @@ void validate_count(const WorkcellBody& body, const char* what, const std::vecto
 
 }  // namespace
 
+WorkcellBody capsule_body(std::string name, BodyKind kind, std::span<const Capsule> capsules_world) {
+  WorkcellBody body;
+  body.name = std::move(name);
+  body.kind = kind;
+  body.capsules.assign(capsules_world.begin(), capsules_world.end());
+  return body;
+}
+
 void validate(const Workcell& cell) {
   std::unordered_set<std::string> names;
   for (std::size_t i = 0; i < cell.bodies.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,9 @@ struct WorkcellBody {
 struct Workcell {
   std::vector<WorkcellBody> bodies;
 };
+
+/// A body of capsules in the world frame: a person, or an arm without meshes.
+[[nodiscard]] WorkcellBody capsule_body(std::string name, BodyKind kind, std::span<const Capsule> capsules_world);
 
 /// Throws Error unless names are distinct and not empty, each body has a shape, poses are rigid and finite, and every
 /// shape and mesh is valid.
