@@ -10,7 +10,7 @@ namespace depthgrid::control {
 namespace {
 
 /// Squared share of a direction that the joints left must still have.
-constexpr double kRankLost = 1e-8;
+constexpr double kRankLost = 1e-6;
 /// A velocity that leaves the box by less counts as inside.
 constexpr double kHolds = 1e-11;
 

@@ -99,7 +99,10 @@ CycleOutput Controller::cycle(const CycleInput& input) noexcept {
       limit_by_obstacle(limits, settings_.limits.velocity_rad_s, point.jacobian, obstacle, settings_.body);
     }
   }
-  output.box = tightened(limiter_.box(), limits);
+  const bool basic = settings_.saturation.variant == SaturationVariant::basic;
+  output.box = tightened(
+      basic ? stoppable_velocities(settings_.limits, limiter_.last().position_rad, settings_.period_s) : limiter_.box(),
+      limits);
 
   const SaturationResult result = saturation_.solve(std::span<const Task>(tasks_).first(further + 1), output.box,
                                                     posture_velocity(), std::span(approach_).first(rows));

@@ -4,6 +4,10 @@
 //   box = joint limits, tightened by every point of the body
 //   qd  = saturation in the null space of (xd, further tasks) within the box, nearest to a posture
 //   q   = q_before + T qd                              within position, velocity and acceleration limits
+//
+// The optimal saturation knows the acceleration limits and chooses within them. The basic one would find no scale while
+// the arm moves, since standing still is then out of reach: it chooses without them, and the command follows as fast as
+// they let it.
 #pragma once
 
 #include <Eigen/Core>
@@ -53,7 +57,7 @@ struct CycleOutput {
   Eigen::Vector3d repulsion_m_s = Eigen::Vector3d::Zero();  ///< V_rep, pivoted where that is on
   double largest_risk = 0;                                  ///< f over the points of the body
   std::array<TaskResult, kMostTasks> tasks{};
-  JointBox box;  ///< that the command was chosen from
+  JointBox box;  ///< that the saturation chose from
 };
 
 /// Not for two threads at once; cycle() does not allocate, lock or throw.

@@ -14,16 +14,12 @@ Bounds clamp_to(const Bounds& wanted, const Bounds& limits) noexcept {
   return {std::clamp(wanted.lower, limits.lower, limits.upper), std::clamp(wanted.upper, limits.lower, limits.upper)};
 }
 
-Bounds admissible(double lowest, double highest, double velocity, double acceleration, double position, double before,
-                  double period) noexcept {
-  if (!(std::isfinite(position) && std::isfinite(before))) {
-    return {0, 0};
-  }
-  // Beyond a limit the joint may still move back: towards the other one, which is far.
-  const Bounds by_position{-largest_stoppable(position - lowest, acceleration, period),
-                           largest_stoppable(highest - position, acceleration, period)};
-  const double step = acceleration * period;
-  return clamp_to(clamp_to(by_position, {-velocity, velocity}), {before - step, before + step});
+/// Beyond a limit the joint may still move back: towards the other one, which is far.
+Bounds stoppable(const JointLimits& limits, int i, double position, double period) noexcept {
+  const double acceleration = limits.acceleration_rad_s2[i];
+  const Bounds by_position{-largest_stoppable(position - limits.lowest_rad[i], acceleration, period),
+                           largest_stoppable(limits.highest_rad[i] - position, acceleration, period)};
+  return clamp_to(by_position, {-limits.velocity_rad_s[i], limits.velocity_rad_s[i]});
 }
 
 }  // namespace
@@ -49,16 +45,34 @@ double stopping_distance(double velocity_rad_s, double acceleration_rad_s2, doub
 
 JointBox admissible_velocities(const JointLimits& limits, const JointVector& position_rad,
                                const JointVector& before_rad_s, double period_s) noexcept {
-  const int joints = limits.joints();
-  JointBox box{JointVector::Zero(joints), JointVector::Zero(joints)};
-  if (position_rad.size() != joints || before_rad_s.size() != joints) {
-    return box;
+  JointBox box = stoppable_velocities(limits, position_rad, period_s);
+  if (position_rad.size() != limits.joints() || before_rad_s.size() != limits.joints()) {
+    return {JointVector::Zero(limits.joints()), JointVector::Zero(limits.joints())};
   }
-  for (int i = 0; i < joints; ++i) {
-    const Bounds bounds = admissible(limits.lowest_rad[i], limits.highest_rad[i], limits.velocity_rad_s[i],
-                                     limits.acceleration_rad_s2[i], position_rad[i], before_rad_s[i], period_s);
+  for (int i = 0; i < limits.joints(); ++i) {
+    if (!std::isfinite(position_rad[i]) || !std::isfinite(before_rad_s[i])) {
+      box.lower_rad_s[i] = 0;
+      box.upper_rad_s[i] = 0;
+      continue;
+    }
+    const double step = limits.acceleration_rad_s2[i] * period_s;
+    const Bounds bounds =
+        clamp_to({box.lower_rad_s[i], box.upper_rad_s[i]}, {before_rad_s[i] - step, before_rad_s[i] + step});
     box.lower_rad_s[i] = bounds.lower;
     box.upper_rad_s[i] = bounds.upper;
+  }
+  return box;
+}
+
+JointBox stoppable_velocities(const JointLimits& limits, const JointVector& position_rad, double period_s) noexcept {
+  const int joints = limits.joints();
+  JointBox box{JointVector::Zero(joints), JointVector::Zero(joints)};
+  for (int i = 0; i < std::min<Eigen::Index>(joints, position_rad.size()); ++i) {
+    if (std::isfinite(position_rad[i])) {
+      const Bounds bounds = stoppable(limits, i, position_rad[i], period_s);
+      box.lower_rad_s[i] = bounds.lower;
+      box.upper_rad_s[i] = bounds.upper;
+    }
   }
   return box;
 }

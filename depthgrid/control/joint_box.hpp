@@ -32,6 +32,11 @@ struct JointBox {
 [[nodiscard]] JointBox admissible_velocities(const JointLimits& limits, const JointVector& position_rad,
                                              const JointVector& before_rad_s, double period_s) noexcept;
 
+/// The same without the acceleration from a velocity before: every velocity from which a stop within the position
+/// limits is possible. Rest is always among them.
+[[nodiscard]] JointBox stoppable_velocities(const JointLimits& limits, const JointVector& position_rad,
+                                            double period_s) noexcept;
+
 /// The part of the box within `limits`; for a joint where nothing is left, the point of the box nearest to them. A
 /// limit that is NaN counts as 0.
 [[nodiscard]] JointBox tightened(const JointBox& box, const JointBox& limits) noexcept;

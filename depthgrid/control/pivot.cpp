@@ -1,5 +1,6 @@
 #include "depthgrid/control/pivot.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

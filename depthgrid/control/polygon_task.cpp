@@ -1,5 +1,6 @@
 #include "depthgrid/control/polygon_task.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

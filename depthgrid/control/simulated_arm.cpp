@@ -50,7 +50,7 @@ void SimulatedArm::advance() noexcept {
   const JointVector wanted = (target - motion_.last().position_rad) / motion_.period_s();
   const JointVector possible = clamped(wanted, motion_.box());
   if ((possible - wanted).cwiseAbs().maxCoeff() <= kSame) {
-    motion_.step(wanted);
+    motion_.start(target, wanted);  // not step(): there rounding would add up
   } else {
     ++not_followed_;
     motion_.step_towards(target);
