@@ -22,6 +22,7 @@ function(depthgrid_compile_options target)
   endif()
 endfunction()
 
+# Shared and static libraries are compiled alike, so that a compiler cache serves both.
 # depthgrid_add_library(core SOURCES a.cpp HEADERS a.hpp PUBLIC Eigen3::Eigen PRIVATE PNG::PNG)
 function(depthgrid_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE" ${ARGN})
@@ -29,7 +30,7 @@ function(depthgrid_add_library name)
   add_library(depthgrid::${name} ALIAS depthgrid_${name})
   set_target_properties(depthgrid_${name} PROPERTIES
     EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-    POSITION_INDEPENDENT_CODE ON)
+    POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "")
   target_compile_features(depthgrid_${name} PUBLIC cxx_std_20)
   target_include_directories(depthgrid_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

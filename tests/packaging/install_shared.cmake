@@ -4,7 +4,9 @@ include("${CMAKE_CURRENT_LIST_DIR}/common.cmake")
 file(REMOVE_RECURSE "${WORK}/prefix" "${WORK}/consumer")
 run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON
   "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DDEPTHGRID_BUILD_APP=OFF
-  -DDEPTHGRID_BUILD_TESTS=OFF -DDEPTHGRID_BUILD_BENCHMARKS=OFF)
+  -DDEPTHGRID_BUILD_TESTS=OFF -DDEPTHGRID_BUILD_BENCHMARKS=OFF
+  # As the tree under test has it: then a compiler cache has the objects already.
+  "-DDEPTHGRID_WARNINGS_AS_ERRORS=${WARNINGS_AS_ERRORS}")
 run("${CMAKE_COMMAND}" --build "${WORK}/build")
 run("${CMAKE_COMMAND}" --install "${WORK}/build" --prefix "${WORK}/prefix")
 build_and_run_consumer("${WORK}/prefix")
