@@ -1,5 +1,5 @@
-// How long the robot's interval in an image takes, one core: the LWR's eight capsules at random joint positions, 640x480,
-// with the padding of a moving arm. Prints a table.
+// How long the robot's interval in an image takes, one core: the LWR's eight capsules at random joint positions,
+// 640x480, with the padding of a moving arm. Prints a table.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -29,7 +29,9 @@ std::vector<std::uint16_t> image(std::mt19937_64& engine) {
 void measure(const RobotModel& model, double distance_m, double time_error_s, bool with_reading, int poses,
              int repetitions) {
   std::mt19937_64 engine(1);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
   const PinholeCamera camera = from_opencv(640, 480, 525, 525, 319.5, 239.5);
   robot::JointHistory history(7, 2, 1.0, 0.0);
   robot::ExposureSettings settings;

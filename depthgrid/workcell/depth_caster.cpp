@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "depthgrid/workcell/embree_scene.hpp"
+#include "depthgrid/workcell/packet_mask.hpp"
 #if defined(__SSE__)
 #include <xmmintrin.h>
 #endif
@@ -61,6 +62,67 @@ struct Rays {
   Eigen::Vector3d per_row;
 };
 
+/// A square of rays through the centres of 4 x 4 pixels, cast together.
+class Packet {
+ public:
+  explicit Packet(const Eigen::Vector3d& origin_world) noexcept {
+    const Eigen::Vector3f origin = origin_world.cast<float>();
+    std::fill_n(&rays_.ray.org_x[0], kPacket, origin.x());
+    std::fill_n(&rays_.ray.org_y[0], kPacket, origin.y());
+    std::fill_n(&rays_.ray.org_z[0], kPacket, origin.z());
+    std::fill_n(&rays_.ray.tnear[0], kPacket, 0.0F);
+    std::fill_n(&rays_.ray.time[0], kPacket, 0.0F);
+    std::fill_n(&rays_.ray.mask[0], kPacket, ~0U);
+    std::fill_n(&rays_.ray.flags[0], kPacket, 0U);
+  }
+
+  /// From pixel (u, v) on; each ray ends where its pixel's depth is already.
+  void aim(const Rays& rays, int u, int v, const DepthImage& depth_m) noexcept {
+    u_ = u;
+    v_ = v;
+    const Eigen::Vector3d corner = rays.corner + u * rays.per_column + v * rays.per_row;
+    for (int k = 0; k < kPacket; ++k) {
+      const int column = k % kPacketWidth;
+      const int row = k / kPacketWidth;
+      rays_.ray.dir_x[k] = static_cast<float>(corner.x() + column * rays.per_column.x() + row * rays.per_row.x());
+      rays_.ray.dir_y[k] = static_cast<float>(corner.y() + column * rays.per_column.y() + row * rays.per_row.y());
+      rays_.ray.dir_z[k] = static_cast<float>(corner.z() + column * rays.per_column.z() + row * rays.per_row.z());
+      const bool in_image = u + column < depth_m.width_px() && v + row < depth_m.height_px();
+      active_[static_cast<std::size_t>(k)] = in_image ? -1 : 0;
+      rays_.ray.tfar[k] = in_image ? depth_m.at(u + column, v + row) : 0.0F;
+      rays_.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+      rays_.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+
+  void cast(RTCScene scene) noexcept {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(active_.data(), scene, &context, &rays_);
+  }
+
+  /// Writes what was hit.
+  void take(const EmbreeScene& scene, DepthImage& depth_m, BodyImage* bodies) const noexcept {
+    for (int k = 0; k < kPacket; ++k) {
+      if (active_[static_cast<std::size_t>(k)] == 0 || rays_.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
+        continue;
+      }
+      const std::size_t pixel = depth_m.index(u_ + k % kPacketWidth, v_ + k / kPacketWidth);
+      depth_m.data()[pixel] = rays_.ray.tfar[k];
+      if (bodies != nullptr) {
+        bodies->body[pixel] = scene.body_of_hit(rays_.hit.instID[0][k], rays_.hit.geomID[k], rays_.hit.primID[k]);
+      }
+    }
+  }
+
+ private:
+  alignas(64) RTCRayHit16 rays_{};
+  alignas(64) std::array<int, kPacket> active_{};
+  int u_ = 0;
+  int v_ = 0;
+};
+
 /// Whether the camera stands in a solid; planes are not asked.
 bool inside(const WorkcellBody& body, const Eigen::Vector3d& p_world) {
   const Eigen::Vector3d p = body.T_world_body.inverse(Eigen::Isometry) * p_world;
@@ -74,7 +136,10 @@ bool inside(const WorkcellBody& body, const Eigen::Vector3d& p_world) {
 }  // namespace
 
 struct DepthCaster::Impl {
-  explicit Impl(const Workcell& given) : cell((validate(given), given)), scene(cell) { collect_planes(); }
+  explicit Impl(const Workcell& given)
+      : cell((validate(given), given)), scene(cell), boxes_of_meshes(mesh_boxes(cell)) {
+    collect_planes();
+  }
 
   void collect_planes() {
     planes.clear();
@@ -87,12 +152,13 @@ struct DepthCaster::Impl {
 
   /// Depth of the nearest plane in every pixel, and its body; exact to the float. Where there is none: kNothing.
   void cast_planes(const Rays& rays, DepthImage& depth_m, BodyImage* bodies) const;
-  void cast_rest(const Rays& rays, DepthImage& depth_m, BodyImage* bodies) const;
+  void cast_rest(const Rays& rays, const PacketMask& mask, DepthImage& depth_m, BodyImage* bodies) const;
   void render(const PinholeCamera& camera, const Pose& T_world_camera, DepthImage& depth_m, BodyImage* bodies) const;
 
   Workcell cell;
   EmbreeScene scene;
   std::vector<RoomPlane> planes;
+  std::vector<simulation::Box> boxes_of_meshes;
 };
 
 void DepthCaster::Impl::cast_planes(const Rays& rays, DepthImage& depth_m, BodyImage* bodies) const {
@@ -125,46 +191,18 @@ void DepthCaster::Impl::cast_planes(const Rays& rays, DepthImage& depth_m, BodyI
   }
 }
 
-void DepthCaster::Impl::cast_rest(const Rays& rays, DepthImage& depth_m, BodyImage* bodies) const {
+void DepthCaster::Impl::cast_rest(const Rays& rays, const PacketMask& mask, DepthImage& depth_m,
+                                  BodyImage* bodies) const {
   const FlushDenormals flush;
-  const Eigen::Vector3f origin = rays.origin.cast<float>();
-  alignas(64) RTCRayHit16 packet;
-  alignas(64) std::array<int, kPacket> valid{};
-  for (int v0 = 0; v0 < depth_m.height_px(); v0 += kPacketWidth) {
-    for (int u0 = 0; u0 < depth_m.width_px(); u0 += kPacketWidth) {
-      for (int k = 0; k < kPacket; ++k) {
-        const int u = u0 + k % kPacketWidth;
-        const int v = v0 + k / kPacketWidth;
-        valid[static_cast<std::size_t>(k)] = u < depth_m.width_px() && v < depth_m.height_px() ? -1 : 0;
-        const Eigen::Vector3f direction = (rays.corner + u * rays.per_column + v * rays.per_row).cast<float>();
-        packet.ray.org_x[k] = origin.x();
-        packet.ray.org_y[k] = origin.y();
-        packet.ray.org_z[k] = origin.z();
-        packet.ray.dir_x[k] = direction.x();
-        packet.ray.dir_y[k] = direction.y();
-        packet.ray.dir_z[k] = direction.z();
-        packet.ray.tnear[k] = 0;
-        packet.ray.tfar[k] = valid[static_cast<std::size_t>(k)] != 0 ? depth_m.at(u, v) : 0;
-        packet.ray.time[k] = 0;
-        packet.ray.mask[k] = ~0U;
-        packet.ray.flags[k] = 0;
-        packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  Packet packet(rays.origin);
+  for (int row = 0; row < mask.rows(); ++row) {
+    for (int column = 0; column < mask.columns(); ++column) {
+      if (!mask.at(column, row)) {
+        continue;
       }
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-      rtcIntersect16(valid.data(), scene.scene(), &context, &packet);
-      for (int k = 0; k < kPacket; ++k) {
-        if (valid[static_cast<std::size_t>(k)] == 0 || packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
-          continue;
-        }
-        const std::size_t pixel = depth_m.index(u0 + k % kPacketWidth, v0 + k / kPacketWidth);
-        depth_m.data()[pixel] = packet.ray.tfar[k];
-        if (bodies != nullptr) {
-          bodies->body[pixel] = scene.body_of_hit(packet.hit.instID[0][k], packet.hit.geomID[k], packet.hit.primID[k]);
-        }
-      }
+      packet.aim(rays, column * kPacketWidth, row * kPacketWidth, depth_m);
+      packet.cast(scene.scene());
+      packet.take(scene, depth_m, bodies);
     }
   }
 }
@@ -188,7 +226,9 @@ void DepthCaster::Impl::render(const PinholeCamera& camera, const Pose& T_world_
   }
   const Rays rays(camera, T_world_camera);
   cast_planes(rays, depth_m, bodies);
-  cast_rest(rays, depth_m, bodies);
+  PacketMask mask(camera, kPacketWidth);
+  mask.add(cell, boxes_of_meshes, T_world_camera);
+  cast_rest(rays, mask, depth_m, bodies);
   std::replace(depth_m.data(), depth_m.data() + pixels, kNothing, 0.0F);
 }
 
