@@ -34,8 +34,8 @@ class RobotAtExposure {
   RobotAtExposure(const RobotModel& model, const JointHistory& history, const PinholeCamera& camera,
                   std::vector<LinkCapsule> capsules, const ExposureSettings& settings);
 
-  /// The image is exposed about time_s, on the history's clock. `reading`: that image, or null (RobotRemoval::find). The
-  /// padding grows with joints.time_error_s. The view is good until the next call.
+  /// The image is exposed about time_s, on the history's clock. `reading`: that image, or null (RobotRemoval::find).
+  /// The padding grows with joints.time_error_s. The view is good until the next call.
   [[nodiscard]] ExposedRobot find(double time_s, const Pose& T_world_camera,
                                   const DepthView* reading = nullptr) noexcept;
 

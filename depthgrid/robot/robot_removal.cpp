@@ -134,7 +134,8 @@ void RobotRemoval::write(int v, const DepthView* reading) noexcept {
   const std::size_t start = static_cast<std::size_t>(v) * static_cast<std::size_t>(stride_px_);
   PixelSpan& written = written_[static_cast<std::size_t>(v)];
   if (!written.empty()) {
-    std::fill_n(near_m_.begin() + static_cast<std::ptrdiff_t>(start) + written.begin, written.end - written.begin, 0.0F);
+    std::fill_n(near_m_.begin() + static_cast<std::ptrdiff_t>(start) + written.begin, written.end - written.begin,
+                0.0F);
     std::fill_n(far_m_.begin() + static_cast<std::ptrdiff_t>(start) + written.begin, written.end - written.begin, 0.0F);
   }
   written = {};

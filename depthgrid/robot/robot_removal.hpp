@@ -16,7 +16,8 @@ namespace depthgrid::robot {
 
 struct RemovalSettings {
   /// Added to every capsule's radius: by how much the robot may leave its capsules, plus the camera's margin at the
-  /// robot's depth, plus the error of calibration there. What stands this near to the robot is not seen (docs/robot.md).
+  /// robot's depth, plus the error of calibration there. What stands this near to the robot is not seen
+  /// (docs/robot.md).
   double padding_m = 0;
   /// Adds what half a pixel's diagonal measures at each capsule's far end: a reading may come from anywhere in its
   /// pixel, while the interval is that of the pixel's centre. False only for rendered images.
@@ -63,9 +64,9 @@ class RobotRemoval {
   AlignedVector<float> x_ray_;
   AlignedVector<float> reading_m_;
   AlignedVector<float> scratch_;
-  std::vector<PixelSpan> spans_;       ///< of each capsule, one a row
-  std::vector<RowRange> rows_;         ///< of each capsule
-  std::vector<RowCapsule> in_camera_;  ///< of each capsule
+  std::vector<PixelSpan> spans_;          ///< of each capsule, one a row
+  std::vector<RowRange> rows_;            ///< of each capsule
+  std::vector<RowCapsule> in_camera_;     ///< of each capsule
   std::vector<RowCapsule> row_capsules_;  ///< those of one row
   std::vector<PixelSpan> row_spans_;
 };

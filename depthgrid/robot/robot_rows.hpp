@@ -15,12 +15,12 @@ inline constexpr int kLanes = 16;
 struct RowCapsule {
   std::array<float, 3> a{};
   std::array<float, 3> b{};
-  std::array<float, 3> axis{};         ///< unit, from a to b; any where they are the same
-  std::array<float, 3> a_across{};     ///< a less its part along the axis
-  float a_along = 0;                   ///< a's part along the axis
-  float length = 0;                    ///< from a to b
-  float body_square = 0;               ///< squared radius
-  float padded_square = 0;             ///< of the padded capsule, a little more than rounding takes
+  std::array<float, 3> axis{};      ///< unit, from a to b; any where they are the same
+  std::array<float, 3> a_across{};  ///< a less its part along the axis
+  float a_along = 0;                ///< a's part along the axis
+  float length = 0;                 ///< from a to b
+  float body_square = 0;            ///< squared radius
+  float padded_square = 0;          ///< of the padded capsule, a little more than rounding takes
 };
 
 /// One row's work. `near_m` and `far_m` have room for whole vectors from `pixels.begin` (a multiple of kLanes) on.
