@@ -1,4 +1,6 @@
 // Joint positions at the time of an exposure: interpolated, held or not known, while another thread adds.
+#include "depthgrid/robot/joint_history.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -7,7 +9,6 @@
 #include <limits>
 #include <thread>
 
-#include "depthgrid/robot/joint_history.hpp"
 #include "robot/robot_support.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/random_run.hpp"

@@ -1,19 +1,20 @@
 // The padding for an error of time contains every link that moved within it, and is not much too large.
+#include "depthgrid/robot/motion_padding.hpp"
+
 #include <gtest/gtest.h>
 
 #include <iostream>
 
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
-#include "depthgrid/robot/motion_padding.hpp"
 #include "robot/robot_support.hpp"
 #include "support/random_run.hpp"
 
 namespace depthgrid::robot {
 namespace {
 
-/// How far the capsules' ends moved: a point of a capsule moves at least that far somewhere, and its bound must hold for
-/// points all over its surface.
+/// How far the capsules' ends moved: a point of a capsule moves at least that far somewhere, and its bound must hold
+/// for points all over its surface.
 double moved_m(const LinkCapsule& item, const Pose& before, const Pose& after, Random& random) {
   double most = 0;
   for (int k = 0; k < 20; ++k) {

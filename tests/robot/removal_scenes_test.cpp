@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <limits>
 
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
@@ -251,7 +250,8 @@ ClockRow wrong_clock(double speed_part, double time_error_s, const test::RandomR
 // Prints the table of docs/robot.md; that is with DEPTHGRID_TEST_COUNT=400.
 TEST(RemovalScenes, AWrongClockIsCoveredByThePaddingForMotion) {
   const test::RandomRun run = test::random_run(12);
-  std::printf("| speed | time error | moved, most | missed at 2 cm | 5 cm | 10 cm | padding for motion, most | missed |\n");
+  std::printf(
+      "| speed | time error | moved, most | missed at 2 cm | 5 cm | 10 cm | padding for motion, most | missed |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
   for (const double part : {0.1, 0.25, 0.5, 1.0}) {
     for (const double time_error_s : {0.02, 0.05}) {

@@ -34,7 +34,11 @@ struct View {
   RemovalSettings settings;
 
   View(Random& random, int width_px, int height_px)
-      : camera{width_px, height_px, 0.82 * width_px, 0.82 * width_px, random.uniform(0.4, 0.6) * width_px,
+      : camera{width_px,
+               height_px,
+               0.82 * width_px,
+               0.82 * width_px,
+               random.uniform(0.4, 0.6) * width_px,
                random.uniform(0.4, 0.6) * height_px} {
     const bool arm = random.integer(0, 3) > 0;
     T_world_camera = random_camera_pose(random, arm ? 0.7 : 0.2, 3.5);
@@ -92,7 +96,8 @@ void compare(const View& view, const RobotView& found, const std::vector<float>&
     for (int u = 0; u < view.camera.width_px; ++u) {
       const double near_m = found.near_m[v * found.stride_px + u];
       const double far_m = found.far_m[v * found.stride_px + u];
-      const double reading = reading_m.empty() ? 0.0 : reading_m[static_cast<std::size_t>(v * view.camera.width_px + u)];
+      const double reading =
+          reading_m.empty() ? 0.0 : reading_m[static_cast<std::size_t>(v * view.camera.width_px + u)];
       const TwinRay thin(capsules, view.padding_m(0), view.camera, u, v);
       const TwinRay thick(capsules, view.padding_m(kGuard), view.camera, u, v);
       const TwinPart* inner = thin.answer(reading);
@@ -100,17 +105,17 @@ void compare(const View& view, const RobotView& found, const std::vector<float>&
       tally.robot += inner != nullptr ? 1 : 0;
       const bool holds = inner == nullptr || (near_m > 0 && near_m <= std::max(inner->near_m, 1e-30) + kRounding &&
                                               far_m >= inner->far_m - kRounding);
-      const bool held = near_m == 0 || (outer != nullptr && near_m >= outer->near_m - kRounding &&
-                                        far_m <= outer->far_m + kRounding);
+      const bool held =
+          near_m == 0 || (outer != nullptr && near_m >= outer->near_m - kRounding && far_m <= outer->far_m + kRounding);
       if (holds && held) {
         continue;
       }
       // Only where rounding may decide: another part of the twin's, on a ray that hardly touches something.
       ++tally.disputed;
       const TwinPart* other = near_m > 0 ? thick.part_at(0.5 * (near_m + far_m)) : nullptr;
-      ASSERT_TRUE(near_m == 0 ? outer != nullptr && inner == nullptr
-                              : other != nullptr && near_m >= other->near_m - kRounding &&
-                                    far_m <= other->far_m + kRounding)
+      ASSERT_TRUE(near_m == 0
+                      ? outer != nullptr && inner == nullptr
+                      : other != nullptr && near_m >= other->near_m - kRounding && far_m <= other->far_m + kRounding)
           << what << ", pixel " << u << ", " << v << ": [" << near_m << ", " << far_m << "]";
     }
   }
@@ -124,7 +129,8 @@ std::vector<float> random_readings(const View& view, Random& random) {
       const TwinRay ray(capsules, view.padding_m(0), view.camera, u, v);
       double depth_m = random.integer(0, 4) == 0 ? 0.0 : random.uniform(0.1, 4);
       if (!ray.parts.empty() && random.integer(0, 2) > 0) {
-        const TwinPart& part = ray.parts[static_cast<std::size_t>(random.integer(0, static_cast<int>(ray.parts.size()) - 1))];
+        const TwinPart& part =
+            ray.parts[static_cast<std::size_t>(random.integer(0, static_cast<int>(ray.parts.size()) - 1))];
         depth_m = random.uniform(part.near_m, part.far_m);
       }
       readings.push_back(static_cast<float>(std::max(0.0, depth_m)));
@@ -173,12 +179,14 @@ TEST(Removal, AgreesWithTheSimulator) {
         const float near_m = fast.near_m[v * fast.stride_px + u];
         const float far_m = fast.far_m[v * fast.stride_px + u];
         robot += slow.robot_near_m.at(u, v) > 0 ? 1 : 0;
-        const double off = std::max(std::abs(near_m - slow.robot_near_m.at(u, v)), std::abs(far_m - slow.robot_far_m.at(u, v)));
+        const double off =
+            std::max(std::abs(near_m - slow.robot_near_m.at(u, v)), std::abs(far_m - slow.robot_far_m.at(u, v)));
         // A ray that just touches is in the capsule for 2 sqrt(2 r d), where d is how deep.
         different += off > 5e-3 ? 1 : 0;
       }
     }
-    EXPECT_LT(static_cast<double>(different), 2 + 2e-3 * static_cast<double>(robot)) << "case " << i << "; " << run.reproduce();
+    EXPECT_LT(static_cast<double>(different), 2 + 2e-3 * static_cast<double>(robot))
+        << "case " << i << "; " << run.reproduce();
   }
 }
 
@@ -320,9 +328,8 @@ TEST(RobotAtExposure, FromTheTimeToTheImage) {
   EXPECT_GT(robot.motion_m().back(), tip_m);  // the newest sample is old
   EXPECT_EQ(robot.find(0.2, view.T_world_camera).view.near_m, nullptr);
   settings.joint_speeds = {1, 2};
-  EXPECT_NE(test::thrown_message([&] {
-              const RobotAtExposure unused(kuka(), history, view.camera, link_capsules(kuka()), settings);
-            }),
+  EXPECT_NE(test::thrown_message(
+                [&] { const RobotAtExposure unused(kuka(), history, view.camera, link_capsules(kuka()), settings); }),
             "");
   DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
   const std::vector<std::uint16_t> units(64 * 48, 1500);

@@ -75,9 +75,9 @@ inline std::filesystem::path robot_data() {
 }  // namespace depthgrid::robot
 
 /// Skips the test where the robots of the data folder are not there, and says so.
-#define DEPTHGRID_REQUIRE_ROBOT_DATA()                                                                         \
-  if (!std::filesystem::is_directory(depthgrid::robot::robot_data())) {                                        \
-    GTEST_SKIP() << "no robots in '" << depthgrid::robot::robot_data().string()                                \
-                 << "': set DEPTHGRID_DATA to the folder that holds 'robots'";                                  \
-  }                                                                                                            \
+#define DEPTHGRID_REQUIRE_ROBOT_DATA()                                          \
+  if (!std::filesystem::is_directory(depthgrid::robot::robot_data())) {         \
+    GTEST_SKIP() << "no robots in '" << depthgrid::robot::robot_data().string() \
+                 << "': set DEPTHGRID_DATA to the folder that holds 'robots'";  \
+  }                                                                             \
   static_assert(true)

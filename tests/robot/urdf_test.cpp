@@ -1,4 +1,6 @@
 // URDF files: what is read, and that every fault ends in one line that names the file and what is wrong.
+#include "depthgrid/robot/urdf.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 #include <string>
 
 #include "depthgrid/robot/kuka_lwr4.hpp"
-#include "depthgrid/robot/urdf.hpp"
 #include "robot/robot_support.hpp"
 #include "support/thrown_message.hpp"
 
@@ -22,8 +23,8 @@ const char* const kLinks = R"(<link name="a"/><link name="b"/><link name="c"/>)"
 std::string joint(const std::string& name, const std::string& parent, const std::string& child,
                   const std::string& more = "", const std::string& type = "revolute",
                   const std::string& limit = R"(<limit lower="-1" upper="2" velocity="3" effort="4"/>)") {
-  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child +
-         "'/>" + limit + more + "</joint>";
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child + "'/>" +
+         limit + more + "</joint>";
 }
 
 std::string message_of(const std::string& inside) {
@@ -37,11 +38,11 @@ std::string message_of(const std::string& inside) {
 }
 
 TEST(Urdf, ReadsATreeAndItsShapes) {
-  const std::string text = std::string("<robot name='r'><link name='a'><visual><geometry><sphere radius='9'/></geometry>") +
-                           "</visual><collision><origin xyz='1 2 3'/><geometry><box size='4 5 6'/></geometry></collision>" +
-                           "</link><link name='b'><visual><geometry><sphere radius='0.5'/></geometry></visual></link>" +
-                           "<link name='c'/>" + joint("j1", "a", "b") + joint("j0", "b", "c", "<axis xyz='0 0 2'/>", "prismatic") +
-                           "</robot>";
+  const std::string text =
+      std::string("<robot name='r'><link name='a'><visual><geometry><sphere radius='9'/></geometry>") +
+      "</visual><collision><origin xyz='1 2 3'/><geometry><box size='4 5 6'/></geometry></collision>" +
+      "</link><link name='b'><visual><geometry><sphere radius='0.5'/></geometry></visual></link>" + "<link name='c'/>" +
+      joint("j1", "a", "b") + joint("j0", "b", "c", "<axis xyz='0 0 2'/>", "prismatic") + "</robot>";
   const RobotModel model(parse_urdf(text, "arm.urdf"));
   EXPECT_EQ(model.name(), "r");
   ASSERT_EQ(model.links().size(), 3U);
@@ -62,7 +63,8 @@ TEST(Urdf, FilesThatAreNone) {
   EXPECT_THAT(test::thrown_message([] { (void)load_urdf("no/such.urdf"); }),
               HasSubstr("no/such.urdf: there is no such file"));
   EXPECT_THAT(test::thrown_message([] { (void)load_urdf("."); }), HasSubstr("no such file"));
-  for (const char* text : {"", "not XML at all", "<html></html>", "<robot name='r'><link", "<robot/>", "<robot name='r'/>"}) {
+  for (const char* text :
+       {"", "not XML at all", "<html></html>", "<robot name='r'><link", "<robot/>", "<robot name='r'/>"}) {
     EXPECT_THAT(test::thrown_message([&] { const RobotModel unused(parse_urdf(text, "x.urdf")); }),
                 HasSubstr("x.urdf: "))
         << text;
