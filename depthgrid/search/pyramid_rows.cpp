@@ -101,9 +101,12 @@ HWY_INLINE void first_row(const Extremum& extremum, const float* image, const Py
 /// Texels that cover only columns of this range: those from `step` i to `step` i + 3 or so, as far as there are
 /// columns.
 HWY_INLINE PixelRange texels_within(const PixelRange& columns, int step, int reach, int width) {
+  if (columns.empty()) {
+    return {};
+  }
   const PixelRange texels{(columns.begin + step - 1) / step,
                           columns.end == width ? (width + step - 1) / step : (columns.end - 1 - reach + step) / step};
-  return columns.empty() || texels.empty() ? PixelRange{} : texels;
+  return texels.empty() ? PixelRange{} : texels;
 }
 
 /// "None" where the row holds something that will not be written.
