@@ -90,28 +90,37 @@ HWY_INLINE Rectangle project(const LocalCamera& camera, const Bounds& b, V z_low
           hn::Add(hn::Mul(most(b.y_high), fy), hn::Set(d, camera.cy + camera.guard_px))};
 }
 
-/// Rectangles of pixels, one a lane, and the few texels of one level that cover all of them.
-struct Footprint {
-  std::array<I, 4> column;
-  std::array<I, 4> row;   ///< times the level's width
-  int side = 0;           ///< how many of them there are: 1 to 4
-  std::size_t level = 0;  ///< index into LocalCamera::texels
+/// What is known of the pixels of all lanes beforehand.
+struct Expected {
+  /// Pixels between the first and the last that any child projects to, at most.
+  std::uint32_t widest_px = 0;
+  bool islands = false;  ///< whether there may be some of the robot's islands among them
 };
 
-HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, std::uint32_t expected) {
+/// Rectangles of pixels, one a lane, and the few texels of one level that cover all of them.
+struct Footprint {
+  std::array<I, 3> column;
+  std::array<I, 3> row;   ///< times the level's width
+  int side = 0;           ///< how many of them there are: 1 to 3
+  std::size_t level = 0;  ///< index into LocalCamera::texels
+  int last = 0;           ///< pixels between the first and the last, at most
+};
+
+HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, Expected expected) {
   const Ints di;
   const auto largest =
       static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0)))));
   // What the lanes need is never more than expected but for rounding; it must not decide, since instruction sets differ
   // in how many lanes they see at once.
-  const std::uint32_t last = std::max(expected, largest);
+  const std::uint32_t last = std::max(expected.widest_px, largest);
   // Up to three by three pixels are looked up one by one, so that not one too many counts; 6 2^l + 1 pixels lie in at
   // most eight texel columns of level l wherever they begin. The coarsest level has the whole image in eight.
-  if (last <= (camera.has_islands ? 3U : 2U)) {
+  if (last <= 2) {
     const I width = hn::Set(di, camera.width_px);
     Footprint result;
     result.side = static_cast<int>(last) + 1;
     result.level = 0;
+    result.last = static_cast<int>(last);
     for (int n = 0; n < result.side; ++n) {
       const auto at = static_cast<std::size_t>(n);
       result.column[at] = hn::Min(hn::Add(u0, hn::Set(di, n)), u1);
@@ -128,76 +137,96 @@ HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1
   const I j0 = hn::ShiftRightSame(v0, texels.shift);
   const I i1 = hn::Max(i0, hn::Sub(hn::ShiftRightSame(u1, texels.shift), back));
   const I j1 = hn::Max(j0, hn::Sub(hn::ShiftRightSame(v1, texels.shift), back));
-  return {{i0, i1, i1, i1}, {hn::Mul(j0, width), hn::Mul(j1, width), u0, u0}, 2, level};
+  return {{i0, i1, i1}, {hn::Mul(j0, width), hn::Mul(j1, width), u0}, 2, level, static_cast<int>(last)};
 }
 
-/// The extremum of an image over a footprint.
+/// The extremum of a pyramid over a footprint of its texels.
 template <class Pick>
-HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const float* image, const float* pyramid,
-                      Pick pick) {
+HWY_INLINE V extremum(const LocalCamera& camera, const Footprint& at, const float* pyramid, Pick pick) {
   const Floats d;
-  const float* HWY_RESTRICT values = at.level == 0 ? image : pyramid + camera.texels[at.level].offset;
-  V result = hn::GatherIndex(d, values, hn::Add(at.row[0], at.column[0]));
-  for (int n = 1; n < at.side * at.side; ++n) {
-    const auto row = static_cast<std::size_t>(n / at.side);
-    const auto column = static_cast<std::size_t>(n % at.side);
-    result = pick(result, hn::GatherIndex(d, values, hn::Add(at.row[row], at.column[column])));
-  }
-  return result;
+  const float* HWY_RESTRICT texels = pyramid + camera.texels[at.level].offset;
+  const V upper = pick(hn::GatherIndex(d, texels, hn::Add(at.row[0], at.column[0])),
+                       hn::GatherIndex(d, texels, hn::Add(at.row[0], at.column[1])));
+  const V lower = pick(hn::GatherIndex(d, texels, hn::Add(at.row[1], at.column[0])),
+                       hn::GatherIndex(d, texels, hn::Add(at.row[1], at.column[1])));
+  return pick(upper, lower);
 }
 
-/// Lanes of `inside` whose pixel rectangle's frusta are free from z_low to z_high.
-HWY_INLINE M seen_free(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high,
-                       std::uint32_t expected, Footprint& at) {
+/// Lanes of `left` in whose every pixel the box is free or lies in the robot's island: such pixels lie side by side
+/// where one link is seen before another.
+HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1, I v0, I v1, int side, V z_low,
+                                   V z_high) {
   const Floats d;
   const Ints di;
-  at = footprint(camera, hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_low)),
-                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.u_high)),
-                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_low)),
-                 hn::ConvertTo(di, hn::IfThenElseZero(inside, r.v_high)), expected);
-  const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
-  const V free_m = extremum(camera, at, camera.free_m, camera.minima_m, min);
-  return hn::And(inside, hn::And(hn::Gt(z_low, hn::Set(d, camera.blind_m)), hn::Lt(z_high, free_m)));
+  const View& view = *camera.view;
+  const M near_blind = hn::Le(z_low, hn::Set(d, camera.blind_m));
+  const I width = hn::Set(di, camera.width_px);
+  for (int j = 0; j < side; ++j) {
+    const I row = hn::Mul(hn::Min(hn::Add(v0, hn::Set(di, j)), v1), width);
+    for (int i = 0; i < side; ++i) {
+      const I pixel = hn::Add(row, hn::Min(hn::Add(u0, hn::Set(di, i)), u1));
+      const M shadowed = hn::And(left, hn::Or(near_blind, hn::Ge(z_high, hn::GatherIndex(d, camera.free_m, pixel))));
+      if (hn::AllFalse(d, shadowed)) {
+        continue;
+      }
+      const V near_m = hn::GatherIndex(d, view.island_near_m().data(), pixel);
+      const V far_m = hn::GatherIndex(d, view.island_far_m().data(), pixel);
+      left = hn::AndNot(hn::And(shadowed, hn::Or(hn::Lt(z_low, near_m), hn::Gt(z_high, far_m))), left);
+      if (hn::AllFalse(d, left)) {
+        return left;
+      }
+    }
+  }
+  return left;
 }
 
-/// Lanes in whose every pixel the box is free or lies in the robot's island. Pixels of both kinds lie side by side
-/// where one link is seen before another.
-HWY_INLINE M free_or_island(const LocalCamera& camera, M inside, const Footprint& at, V z_low, V z_high) {
+/// Lanes of `left` that lie in islands in every texel.
+HWY_INLINE M island_texels(const LocalCamera& camera, M left, const Footprint& at, V z_low, V z_high) {
   const Floats d;
   const View& view = *camera.view;
-  const V blind = hn::Set(d, camera.blind_m);
-  if (at.level == 0) {
-    M result = inside;
-    for (int n = 0; n < at.side * at.side; ++n) {
-      const I corner =
-          hn::Add(at.row[static_cast<std::size_t>(n / at.side)], at.column[static_cast<std::size_t>(n % at.side)]);
-      const V near_m = hn::GatherIndex(d, view.island_near_m().data(), corner);
-      const V far_m = hn::GatherIndex(d, view.island_far_m().data(), corner);
-      const V free_m = hn::GatherIndex(d, camera.free_m, corner);
-      const M free = hn::And(hn::Gt(z_low, blind), hn::Lt(z_high, free_m));
-      result = hn::And(result, hn::Or(free, hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m))));
-    }
-    return result;
-  }
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
-  const V near_m = extremum(camera, at, view.island_near_m().data(), view.island_near_maxima_m(), max);
-  const V far_m = extremum(camera, at, view.island_far_m().data(), view.island_far_minima_m(), min);
-  return hn::And(inside, hn::And(hn::Ge(z_low, near_m), hn::Le(z_high, far_m)));
+  left = hn::And(left, hn::Ge(z_low, extremum(camera, at, view.island_near_maxima_m(), max)));
+  if (hn::AllFalse(d, left)) {
+    return left;
+  }
+  return hn::And(left, hn::Le(z_high, extremum(camera, at, view.island_far_minima_m(), min)));
 }
 
-/// Lanes of `inside` that the camera frees: seen free, or robot.
-HWY_INLINE M freed(const LocalCamera& camera, M inside, const Rectangle& r, V z_low, V z_high, std::uint32_t expected) {
-  Footprint at;
-  const M free = seen_free(camera, inside, r, z_low, z_high, expected, at);
-  if (!camera.has_islands || hn::AllTrue(Floats(), hn::Or(free, hn::Not(inside)))) {
+/// Lanes of `asked` that the camera frees: seen free, or robot. Their rectangles lie in the image.
+HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_low, V z_high, Expected expected) {
+  const Floats d;
+  const Ints di;
+  const I u0 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.u_low));
+  const I u1 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.u_high));
+  const I v0 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.v_low));
+  const I v1 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.v_high));
+  const Footprint at = footprint(camera, u0, u1, v0, v1, expected);
+  M free = hn::And(asked, hn::Gt(z_low, hn::Set(d, camera.blind_m)));
+  const float* HWY_RESTRICT values = at.level == 0 ? camera.free_m : camera.minima_m + camera.texels[at.level].offset;
+  for (int j = 0; j < at.side && !hn::AllFalse(d, free); ++j) {
+    const I row = at.row[static_cast<std::size_t>(j)];
+    V free_m = hn::GatherIndex(d, values, hn::Add(row, at.column[0]));
+    for (int i = 1; i < at.side; ++i) {
+      free_m = hn::Min(free_m, hn::GatherIndex(d, values, hn::Add(row, at.column[static_cast<std::size_t>(i)])));
+    }
+    free = hn::And(free, hn::Lt(z_high, free_m));
+  }
+  if (!expected.islands) {
     return free;
   }
-  return hn::Or(free, free_or_island(camera, inside, at, z_low, z_high));
+  const M left = hn::AndNot(free, asked);
+  if (hn::AllFalse(d, left)) {
+    return free;
+  }
+  constexpr int kFewPixels = 4;
+  return hn::Or(free, at.last < kFewPixels
+                          ? free_or_island_pixels(camera, left, u0, u1, v0, v1, at.last + 1, z_low, z_high)
+                          : island_texels(camera, left, at, z_low, z_high));
 }
 
 /// Lanes that the camera frees wholly.
-HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b, std::uint32_t expected) {
+HWY_INLINE M freed_whole(const LocalCamera& camera, M asked, const Bounds& b, Expected expected) {
   const Floats d;
   const V zero = hn::Zero(d);
   const M in_front = hn::Gt(b.z_low, hn::Set(d, 1e-6F));
@@ -205,12 +234,12 @@ HWY_INLINE M freed_whole(const LocalCamera& camera, const Bounds& b, std::uint32
   const M inside =
       hn::And(hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
               hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
-  return freed(camera, inside, r, b.z_low, b.z_high, expected);
+  return freed(camera, hn::And(asked, inside), r, b.z_low, b.z_high, expected);
 }
 
 /// Lanes of which the camera frees the part in its view between the clip's depths; where there is no such part it is
 /// free.
-HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, std::uint32_t expected) {
+HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, Expected expected) {
   const Floats d;
   const V zero = hn::Zero(d);
   const V z_low = hn::Max(b.z_low, hn::Set(d, clip.low_m));
@@ -361,16 +390,15 @@ struct Family {
   int count;
   float half_m;  ///< of the children
 
-  /// Pixels between the first and the last that any child projects to, at most: from the parents alone, in the same
-  /// scalar arithmetic for every instruction set.
-  [[nodiscard]] std::uint32_t widest_px(const LocalCamera& camera) const {
-    std::uint32_t widest = 0;
+  /// From the parents alone, in the same scalar arithmetic for every instruction set.
+  [[nodiscard]] Expected expect(const LocalCamera& camera) const {
+    Expected result;
     for (int i = 0; i < count; ++i) {
       const Cube& c = parents[i];
       const auto& r = camera.rotation;
       const auto& a = camera.absolute_rotation;
-      const float x = std::abs(r[0] * c.x + r[1] * c.y + r[2] * c.z + camera.offset_m[0]);
-      const float y = std::abs(r[3] * c.x + r[4] * c.y + r[5] * c.z + camera.offset_m[1]);
+      const float x = r[0] * c.x + r[1] * c.y + r[2] * c.z + camera.offset_m[0];
+      const float y = r[3] * c.x + r[4] * c.y + r[5] * c.z + camera.offset_m[1];
       const float z = r[6] * c.x + r[7] * c.y + r[8] * c.z + camera.offset_m[2];
       float grown = 2 * camera.guard_m;
       if (camera.has_reach) {
@@ -382,16 +410,45 @@ struct Family {
       const float spread_z = (a[6] + a[7] + a[8]) * half_m;
       const float z_low = z - 2 * spread_z - grown;  // of the parent
       if (!(z_low > 1e-3F)) {
-        return 1U << 20U;  // the coarsest level
+        return {1U << 20U, camera.has_islands};  // the coarsest level
       }
       // A box of half sides h at x has its edges at (x +- h_x) / (z -+ h_z).
       const float half_z = spread_z + grown;
-      const float wide = 2 * camera.fx * (spread_x + grown + (x + 2 * spread_x + grown) / z_low * half_z) / z_low;
-      const float high = 2 * camera.fy * (spread_y + grown + (y + 2 * spread_y + grown) / z_low * half_z) / z_low;
+      const float fx = camera.fx / z_low;
+      const float fy = camera.fy / z_low;
+      const float wide = 2 * fx * (spread_x + grown + (std::abs(x) + 2 * spread_x + grown) / z_low * half_z);
+      const float high = 2 * fy * (spread_y + grown + (std::abs(y) + 2 * spread_y + grown) / z_low * half_z);
       const float side = std::min(std::max(wide, high) * 1.0001F + 4 * camera.guard_px, 1e5F);
-      widest = std::max(widest, static_cast<std::uint32_t>(side) + 1);
+      result.widest_px = std::max(result.widest_px, static_cast<std::uint32_t>(side) + 1);
+      if (camera.has_islands && !result.islands) {
+        // |X / Z - x / z| <= (|X - x| + |x| / z |Z - z|) / Z.
+        const float parent_z = 2 * spread_z + grown;
+        const float around_u = fx * (2 * spread_x + grown + std::abs(x) / z * parent_z) * 1.0001F + 4 * camera.guard_px;
+        const float around_v = fy * (2 * spread_y + grown + std::abs(y) / z * parent_z) * 1.0001F + 4 * camera.guard_px;
+        const float u = camera.fx * x / z + camera.cx;
+        const float v = camera.fy * y / z + camera.cy;
+        result.islands =
+            may_have_islands(camera, std::max(u - around_u, 0.0F), std::min(u + around_u, camera.width - 1),
+                             std::max(v - around_v, 0.0F), std::min(v + around_v, camera.height - 1));
+      }
     }
-    return widest;
+    return result;
+  }
+
+  /// Rectangles in continuous coordinates of the image, perhaps empty.
+  [[nodiscard]] static bool may_have_islands(const LocalCamera& camera, float u_low, float u_high, float v_low,
+                                             float v_high) {
+    if (!(u_low <= u_high && v_low <= v_high)) {
+      return false;
+    }
+    const PixelRange columns{static_cast<int>(u_low), static_cast<int>(u_high) + 1};
+    const int last = static_cast<int>(v_high) / View::kBandRows;
+    for (int band = static_cast<int>(v_low) / View::kBandRows; band <= last; ++band) {
+      if (!common(columns, camera.island_bands[band]).empty()) {
+        return true;
+      }
+    }
+    return false;
   }
 };
 
@@ -400,30 +457,12 @@ HWY_INLINE M not_freed(CubeQuery& query, const Family& family, const Boxes& boxe
   const Floats d;
   const V zero = hn::Zero(d);
   M uncovered = query.uncovered_ignored ? open : hn::Lt(zero, zero);
-  std::size_t n = 0;
-  if (!query.uncovered_ignored && query.principal < 0) {
-    // Two cameras at a time, without a branch between them: what one waits for the other hides.
-    for (; n + 1 < query.camera_count; n += 2) {
-      const LocalCamera& one = query.cameras[query.order[n]];
-      const LocalCamera& other = query.cameras[query.order[n + 1]];
-      const M by_one = freed_whole(one, bounds_in(one, boxes), family.widest_px(one));
-      const M by_other = freed_whole(other, bounds_in(other, boxes), family.widest_px(other));
-      open = hn::AndNot(hn::Or(by_one, by_other), open);
-      if (hn::AllFalse(d, open)) {
-        if (n > 0) {
-          std::swap(query.order[0], query.order[n]);
-          std::swap(query.order[1], query.order[n + 1]);
-        }
-        return open;
-      }
-    }
-  }
-  for (; n < query.camera_count; ++n) {
+  for (std::size_t n = 0; n < query.camera_count; ++n) {
     const std::uint8_t k = query.order[n];
     const LocalCamera& camera = query.cameras[k];
     const Bounds bounds = bounds_in(camera, boxes);
-    const std::uint32_t expected = family.widest_px(camera);
-    M gone = freed_whole(camera, bounds, expected);
+    const Expected expected = family.expect(camera);
+    M gone = freed_whole(camera, open, bounds, expected);
     // W and what a camera covers have nothing to do with its reach.
     const bool plain = query.principal == static_cast<int>(k) || query.uncovered_ignored;
     const Bounds own = plain && camera.has_reach ? bounds_in(camera, boxes, false) : bounds;

@@ -75,6 +75,7 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   }
   local.width_px = view.width_px();
   local.has_islands = view.has_islands();
+  local.island_bands = view.island_bands();
   const auto* frustum = std::get_if<FrustumSpace>(&snapshot.settings().space);
   const bool is_principal = frustum != nullptr && frustum->principal == camera;
   local.space = is_principal && !local.has_reach ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};

@@ -47,6 +47,7 @@ struct LocalCamera {
   std::array<Texels, kMostTexels> texels{};
   const PyramidLevel* levels = nullptr;
   int level_count = 0;
+  const PixelRange* island_bands = nullptr;  ///< as of the view
   int width_px = 0;
   bool has_reach = false;
   bool has_islands = false;

@@ -8,26 +8,9 @@
 #include <vector>
 
 #include "depthgrid/core/aligned_vector.hpp"
+#include "depthgrid/search/pixel_range.hpp"
 
 namespace depthgrid::search {
-
-/// Columns or rows [begin, end); without an argument none.
-struct PixelRange {
-  int begin = std::numeric_limits<int>::max();
-  int end = 0;
-  [[nodiscard]] bool empty() const noexcept { return begin >= end; }
-};
-
-/// The smallest range that holds both, of ranges that are either not empty or none.
-[[nodiscard]] inline PixelRange joined(const PixelRange& a, const PixelRange& b) noexcept {
-  return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
-}
-
-/// What lies in both; none if nothing does.
-[[nodiscard]] inline PixelRange common(const PixelRange& a, const PixelRange& b) noexcept {
-  const PixelRange both{std::max(a.begin, b.begin), std::min(a.end, b.end)};
-  return both.empty() ? PixelRange{} : both;
-}
 
 /// The columns of each row that are worked out in single precision because of the robot, w being the reach of the
 /// filter. All begin and end at multiples of kStep, or at the image's border, so that they do not depend on the length

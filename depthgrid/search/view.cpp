@@ -65,6 +65,7 @@ View::View(const RigCamera& camera, const CameraMargins& margins, const Policies
     : free_m_(camera.intrinsics.width_px, camera.intrinsics.height_px),
       island_near_m_(free_m_),
       island_far_m_(free_m_),
+      island_bands_(static_cast<std::size_t>((height_px() + kBandRows - 1) / kBandRows)),
       T_world_camera_(camera.T_world_camera) {
   validate(margins.sensor);
   preparation_ = std::make_unique<Preparation>(camera, margins, policies);
@@ -129,6 +130,20 @@ void View::clear_islands() noexcept {
   }
 }
 
+/// Bands begin and end at multiples of the longest vector: the columns of a row are only known to the length of this
+/// instruction set's.
+void View::join_island_bands() noexcept {
+  constexpr int kStep = FloatColumns::kStep;
+  std::fill(island_bands_.begin(), island_bands_.end(), PixelRange{});
+  for (int v = 0; v < height_px(); ++v) {
+    const PixelRange& columns = preparation_->island_columns[static_cast<std::size_t>(v)];
+    if (!columns.empty()) {
+      PixelRange& band = island_bands_[static_cast<std::size_t>(v / kBandRows)];
+      band = joined(band, {columns.begin / kStep * kStep, (columns.end + kStep - 1) / kStep * kStep});
+    }
+  }
+}
+
 bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
   T_world_camera_ = T_world_camera;  // what the camera covers is known although nothing in it is free
   if (!is_usable(frame)) {
@@ -150,6 +165,7 @@ bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
                              island_near_m_.data(), island_far_m_.data(), p.island_columns};
   has_islands_ = !prepare(p.reading, image, p.rows, result).empty();
   if (has_islands_) {
+    join_island_bands();
     build_island_pyramids(levels_, island_near_m_.data(), island_far_m_.data(), p.island_columns, p.rows.scratch(),
                           island_near_maxima_m_.data(), island_far_minima_m_.data(), p.island_texels);
   }

@@ -10,6 +10,7 @@
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/pose.hpp"
+#include "depthgrid/search/pixel_range.hpp"
 #include "depthgrid/search/settings.hpp"
 
 namespace depthgrid::search {
@@ -72,6 +73,9 @@ class View {
   /// Maxima of island_near_m() and minima of island_far_m(), all levels.
   [[nodiscard]] const float* island_near_maxima_m() const noexcept { return island_near_maxima_m_.data(); }
   [[nodiscard]] const float* island_far_minima_m() const noexcept { return island_far_minima_m_.data(); }
+  /// The columns outside of which each kBandRows rows have no islands.
+  static constexpr int kBandRows = 8;
+  [[nodiscard]] const PixelRange* island_bands() const noexcept { return island_bands_.data(); }
 
  private:
   struct Preparation;
@@ -79,6 +83,7 @@ class View {
   [[nodiscard]] bool is_usable(const Frame& frame) const noexcept;
   void clear() noexcept;
   void clear_islands() noexcept;
+  void join_island_bands() noexcept;
 
   std::unique_ptr<Preparation> preparation_;
   AlignedVector<std::byte> kept_;  ///< the image as it came, without padding
@@ -89,6 +94,7 @@ class View {
   bool has_islands_ = false;
   DepthImage island_near_m_, island_far_m_;
   AlignedVector<float> island_near_maxima_m_, island_far_minima_m_;
+  std::vector<PixelRange> island_bands_;
   Pose T_world_camera_;
   double time_s_ = 0;
   bool present_ = false;
