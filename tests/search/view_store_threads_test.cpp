@@ -112,7 +112,8 @@ void read(const ViewStore& store, const std::atomic<bool>& stop, std::atomic<std
 }
 
 TEST(ViewStoreThreads, SnapshotsAreWholeWhileImagesArrive) {
-  const test::RandomRun run = test::random_run(5000);
+  // Fewer images than that are over before a reader has begun.
+  const std::int64_t images = std::max<std::int64_t>(test::random_run(5000).count, 1000);
   ViewStore store = make_store();
   std::atomic<bool> stop = false;
   std::atomic<std::int64_t> taken = 0;
@@ -130,7 +131,7 @@ TEST(ViewStoreThreads, SnapshotsAreWholeWhileImagesArrive) {
       NumberedFrame frame;
       const test::AllocationGuard guard;
       // Goes on until the readers have had their share of the processor, too.
-      for (int n = 1; n <= run.count || (taken < run.count / 10 && n < 1'000'000); ++n) {
+      for (int n = 1; n <= images || (taken < images / 10 && n < 1'000'000); ++n) {
         dropped += store.update(k, frame.set(n), NumberedFrame::pose(n)) == UpdateResult::dropped ? 1 : 0;
         last[k] = n;
       }
