@@ -16,7 +16,7 @@ constexpr double kFull = 1 - 1e-9;
 /// A gradient shorter than this limits nothing.
 constexpr double kNoGradient = 1e-9;
 
-void set_equalities(const ScaleProblem& problem, Projection& programme) noexcept {
+void set_equalities(const ScaleProblem& problem, ProjectionProblem& programme) noexcept {
   const auto joints = static_cast<int>(problem.base.size());
   const auto taken = static_cast<int>(problem.taken.rows());
   const auto task = static_cast<int>(problem.rows.rows());
@@ -31,7 +31,7 @@ void set_equalities(const ScaleProblem& problem, Projection& programme) noexcept
 }
 
 /// Approach limits as rows of length one, each wide enough for braking.
-void set_limits(std::span<const ApproachLimit> limits, const JointBox& box, Projection& programme) noexcept {
+void set_limits(std::span<const ApproachLimit> limits, const JointBox& box, ProjectionProblem& programme) noexcept {
   const int joints = box.joints();
   const JointVector slowest = braking(box);
   programme.inequality.setZero(std::min<Eigen::Index>(static_cast<Eigen::Index>(limits.size()), kMostInequalities),
@@ -52,17 +52,18 @@ void set_limits(std::span<const ApproachLimit> limits, const JointBox& box, Proj
 std::optional<ScaleAnswer> optimal_scale(const ScaleProblem& problem, const JointBox& box, const JointVector& preferred,
                                          std::span<const ApproachLimit> limits, Projection& projection) noexcept {
   const int joints = box.joints();
-  projection.wanted.setZero(joints + 1);
+  ProjectionProblem& programme = projection.problem();
+  programme.wanted.setZero(joints + 1);
   if (preferred.size() == joints && preferred.allFinite()) {
-    projection.wanted.head(joints) = preferred;
+    programme.wanted.head(joints) = preferred;
   }
-  projection.wanted[joints] = kBeyondFull * kScaleUnit;
-  projection.lower.resize(joints + 1);
-  projection.lower << box.lower_rad_s, 0.0;
-  projection.upper.resize(joints + 1);
-  projection.upper << box.upper_rad_s, kScaleUnit;
-  set_equalities(problem, projection);
-  set_limits(limits, box, projection);
+  programme.wanted[joints] = kBeyondFull * kScaleUnit;
+  programme.lower.resize(joints + 1);
+  programme.lower << box.lower_rad_s, 0.0;
+  programme.upper.resize(joints + 1);
+  programme.upper << box.upper_rad_s, kScaleUnit;
+  set_equalities(problem, programme);
+  set_limits(limits, box, programme);
   if (projection.solve() != ProjectionStatus::solved) {
     return std::nullopt;
   }

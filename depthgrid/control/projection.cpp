@@ -19,39 +19,29 @@ constexpr double kConsistent = 1e-9;
 
 }  // namespace
 
-void Projection::resize(int variables) {
-  wanted.setZero(variables);
-  equality.resize(0, variables);
-  equality_value.resize(0);
-  lower.setZero(variables);
-  upper.setZero(variables);
-  inequality.resize(0, variables);
-  inequality_value.resize(0);
-}
-
 Projection::Variables Projection::normal_of(int constraint) const noexcept {
-  const int n = static_cast<int>(wanted.size());
+  const int n = static_cast<int>(problem_.wanted.size());
   Variables normal = Variables::Zero(n);
   if (constraint < n) {
     normal[constraint] = 1;
   } else if (constraint < 2 * n) {
     normal[constraint - n] = -1;
   } else {
-    normal = -inequality.row(constraint - 2 * n).transpose();
+    normal = -problem_.inequality.row(constraint - 2 * n).transpose();
   }
   return normal;
 }
 
 /// Negative when violated.
 double Projection::slack_of(int constraint) const noexcept {
-  const int n = static_cast<int>(wanted.size());
+  const int n = static_cast<int>(problem_.wanted.size());
   if (constraint < n) {
-    return x_[constraint] - lower[constraint];
+    return x_[constraint] - problem_.lower[constraint];
   }
   if (constraint < 2 * n) {
-    return upper[constraint - n] - x_[constraint - n];
+    return problem_.upper[constraint - n] - x_[constraint - n];
   }
-  return inequality_value[constraint - 2 * n] - inequality.row(constraint - 2 * n).dot(x_);
+  return problem_.inequality_value[constraint - 2 * n] - problem_.inequality.row(constraint - 2 * n).dot(x_);
 }
 
 /// Turns columns `column` and `column + 1` of the basis.
@@ -107,13 +97,13 @@ void Projection::release(int place) noexcept {
 }
 
 ProjectionStatus Projection::take_equalities() noexcept {
-  const int n = static_cast<int>(wanted.size());
-  for (int row = 0; row < equality.rows(); ++row) {
-    const double missing = equality_value[row] - equality.row(row).dot(x_);
-    d_ = basis_.transpose() * equality.row(row).transpose();
+  const int n = static_cast<int>(problem_.wanted.size());
+  for (int row = 0; row < problem_.equality.rows(); ++row) {
+    const double missing = problem_.equality_value[row] - problem_.equality.row(row).dot(x_);
+    d_ = basis_.transpose() * problem_.equality.row(row).transpose();
     const double length_squared = d_.tail(n - active_).squaredNorm();
     if (length_squared <= kDependent * kDependent) {
-      if (std::abs(missing) > kConsistent * (1 + std::abs(equality_value[row]))) {
+      if (std::abs(missing) > kConsistent * (1 + std::abs(problem_.equality_value[row]))) {
         return ProjectionStatus::infeasible;
       }
       continue;
@@ -127,7 +117,7 @@ ProjectionStatus Projection::take_equalities() noexcept {
 }
 
 int Projection::most_violated() const noexcept {
-  const int constraints = static_cast<int>(2 * wanted.size() + inequality.rows());
+  const int constraints = static_cast<int>(2 * problem_.wanted.size() + problem_.inequality.rows());
   int worst = -1;
   double least = -kHolds;
   for (int i = 0; i < constraints; ++i) {
@@ -144,7 +134,7 @@ int Projection::most_violated() const noexcept {
 
 /// Moves to where this constraint holds too, releasing others on the way.
 ProjectionStatus Projection::satisfy(int constraint, int most_steps) noexcept {
-  const int n = static_cast<int>(wanted.size());
+  const int n = static_cast<int>(problem_.wanted.size());
   const Variables normal = normal_of(constraint);
   double multiplier = 0;
   while (++steps_ <= most_steps) {
@@ -186,8 +176,8 @@ ProjectionStatus Projection::satisfy(int constraint, int most_steps) noexcept {
 }
 
 ProjectionStatus Projection::solve() noexcept {
-  const int n = static_cast<int>(wanted.size());
-  x_ = wanted;
+  const int n = static_cast<int>(problem_.wanted.size());
+  x_ = problem_.wanted;
   basis_.setIdentity(n, n);
   triangle_.setZero(n, n);
   d_.setZero(n);
@@ -195,7 +185,7 @@ ProjectionStatus Projection::solve() noexcept {
   is_active_.fill(false);
   active_ = 0;
   steps_ = 0;
-  const int most_steps = 10 * static_cast<int>(2 * n + inequality.rows());
+  const int most_steps = 10 * static_cast<int>(2 * n + problem_.inequality.rows());
   ProjectionStatus status = take_equalities();
   while (status == ProjectionStatus::solved) {
     const int constraint = most_violated();

@@ -25,10 +25,8 @@ enum class ProjectionStatus : std::uint8_t {
   gave_up,     ///< more steps than a few for every constraint: not met in any test
 };
 
-/// One problem and the scratch memory to solve it. Rows of E and A should be of a length near one. Not for two threads
-/// at once; solve() does not allocate, lock or throw.
-class Projection {
- public:
+/// All sizes consistent; lower <= upper, everything finite; rows of E and A of a length near one.
+struct ProjectionProblem {
   using Variables = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostVariables, 1>;
   using EqualityRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor,
                                      kMostVariables, kMostVariables>;
@@ -36,17 +34,23 @@ class Projection {
                                        kMostInequalities, kMostVariables>;
   using InequalityValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostInequalities, 1>;
 
-  // The problem, all sizes consistent; lower <= upper, everything finite.
   Variables wanted;
-  EqualityRows equality;
-  Variables equality_value;
+  EqualityRows equality;     ///< E
+  Variables equality_value;  ///< e
   Variables lower;
   Variables upper;
-  InequalityRows inequality;
-  InequalityValues inequality_value;
+  InequalityRows inequality;          ///< A
+  InequalityValues inequality_value;  ///< b
+};
 
-  /// No rows, bounds of zero width at 0.
-  void resize(int variables);
+/// One problem and the scratch memory to solve it. Not for two threads at once; solve() does not allocate, lock or
+/// throw.
+class Projection {
+ public:
+  using Variables = ProjectionProblem::Variables;
+
+  /// What solve() solves.
+  [[nodiscard]] ProjectionProblem& problem() noexcept { return problem_; }
 
   [[nodiscard]] ProjectionStatus solve() noexcept;
 
@@ -70,6 +74,7 @@ class Projection {
 
   using Square =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostVariables, kMostVariables>;
+  ProjectionProblem problem_;
   Variables x_;
   Square basis_;     ///< orthogonal; its first `active_` columns span the active normals
   Square triangle_;  ///< the active normals in that basis
