@@ -1,9 +1,9 @@
 #include "depthgrid/robot/robot_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <kdl/segment.hpp>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
@@ -71,7 +71,16 @@ void check(const JointDescription& joint, const std::string& source) {
   }
 }
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+Joint joint_of(const JointDescription& description) {
+  Joint joint;
+  joint.name = description.name;
+  joint.type = description.type;
+  const bool limited = description.type != JointType::continuous;
+  joint.lower = limited ? description.lower : -std::numeric_limits<double>::infinity();
+  joint.upper = limited ? description.upper : std::numeric_limits<double>::infinity();
+  joint.max_speed = description.max_speed;
+  return joint;
+}
 
 }  // namespace
 
@@ -84,48 +93,61 @@ struct RobotModel::Parts {
   std::vector<KDL::Segment> segments;  ///< of each link; the root's is a fixed one
 
   explicit Parts(RobotDescription&& robot);
+
+ private:
+  void add_root(const std::string& link);
+  void add_link(const std::string& link, std::size_t parent, const JointDescription& joint);
+  void follow(LinkJoint& carrier, const JointDescription& joint) const;
 };
+
+void RobotModel::Parts::add_root(const std::string& link) {
+  carriers.emplace_back();
+  segments.emplace_back(link);
+}
+
+void RobotModel::Parts::add_link(const std::string& link, std::size_t parent, const JointDescription& joint) {
+  check(joint, source);
+  LinkJoint carrier;
+  carrier.parent = parent;
+  carrier.type = joint.type;
+  if (moves(joint)) {
+    carrier.axis_link = joint.axis.normalized();
+    if (!joint.mimic) {
+      carrier.joint = joints.size();
+      joints.push_back(joint_of(joint));
+    }
+  }
+  carriers.push_back(carrier);
+  segments.push_back(segment_of(link, joint));
+}
+
+/// Makes the carrier of a link follow the joint that `joint` mimics.
+void RobotModel::Parts::follow(LinkJoint& carrier, const JointDescription& joint) const {
+  const auto master = std::find_if(joints.begin(), joints.end(),
+                                   [&joint](const Joint& other) { return other.name == joint.mimic->joint; });
+  if (master == joints.end()) {
+    fail(source, ": joint '", joint.name, "': it mimics '", joint.mimic->joint,
+         "', which is not there, does not move or mimics another itself");
+  }
+  carrier.joint = static_cast<std::size_t>(master - joints.begin());
+  carrier.multiplier = joint.mimic->multiplier;
+  carrier.offset = joint.mimic->offset;
+}
 
 RobotModel::Parts::Parts(RobotDescription&& robot) : name(std::move(robot.name)), source(robot.source) {
   const std::vector<TreeLink> tree = link_tree(robot);
-  std::map<std::string, std::size_t> index_of_joint;
   for (const TreeLink& item : tree) {
     links.push_back(std::move(robot.links[item.link]));
-    LinkJoint carrier;
-    carrier.parent = item.parent;
-    if (item.joint) {
-      const JointDescription& joint = robot.joints[*item.joint];
-      check(joint, source);
-      carrier.type = joint.type;
-      if (moves(joint)) {
-        carrier.axis_link = joint.axis.normalized();
-        if (!joint.mimic) {
-          carrier.joint = joints.size();
-          index_of_joint.emplace(joint.name, joints.size());
-          const bool limited = joint.type != JointType::continuous;
-          joints.push_back({joint.name, joint.type, limited ? joint.lower : -kInfinity,
-                            limited ? joint.upper : kInfinity, joint.max_speed});
-        }
-      }
-      segments.push_back(segment_of(links.back().name, joint));
+    if (item.joint && item.parent) {
+      add_link(links.back().name, *item.parent, robot.joints[*item.joint]);
     } else {
-      segments.emplace_back(links.back().name);
+      add_root(links.back().name);
     }
-    carriers.push_back(carrier);
   }
-  for (std::size_t i = 0; i < tree.size(); ++i) {
-    const JointDescription* joint = tree[i].joint ? &robot.joints[*tree[i].joint] : nullptr;
-    if (joint == nullptr || !moves(*joint) || !joint->mimic) {
-      continue;
+  for (std::size_t i = 0; i < tree.size(); ++i) {  // when all joints have their numbers
+    if (const auto joint = tree[i].joint; joint && moves(robot.joints[*joint]) && robot.joints[*joint].mimic) {
+      follow(carriers[i], robot.joints[*joint]);
     }
-    const auto master = index_of_joint.find(joint->mimic->joint);
-    if (master == index_of_joint.end()) {
-      fail(source, ": joint '", joint->name, "': it mimics '", joint->mimic->joint,
-           "', which is not there, does not move or mimics another itself");
-    }
-    carriers[i].joint = master->second;
-    carriers[i].multiplier = joint->mimic->multiplier;
-    carriers[i].offset = joint->mimic->offset;
   }
 }
 

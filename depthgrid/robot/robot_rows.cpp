@@ -13,6 +13,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::robot::HWY_NAMESPACE {
 
+/// Parts in the scratch memory: the nearer ends of kLanes rays, then the farther ones.
+HWY_INLINE const float* near_ends(const float* parts, std::size_t i) {
+  constexpr std::size_t kPart = 2 * std::size_t{kLanes};
+  return parts + kPart * i;
+}
+HWY_INLINE const float* far_ends(const float* parts, std::size_t i) { return near_ends(parts, i) + kLanes; }
+
 /// Grows the part around `start` over all the capsules' parts that touch it. Infinity stays: no part is there.
 HWY_INLINE Ends part_around(V start, const float* HWY_RESTRICT parts, std::size_t count) {
   const Floats d;
@@ -20,8 +27,8 @@ HWY_INLINE Ends part_around(V start, const float* HWY_RESTRICT parts, std::size_
   for (std::size_t pass = 0; pass < count; ++pass) {
     const Ends before = part;
     for (std::size_t i = 0; i < count; ++i) {
-      const V near = hn::Load(d, parts + 2 * kLanes * i);
-      const V far = hn::Load(d, parts + 2 * kLanes * i + kLanes);
+      const V near = hn::Load(d, near_ends(parts, i));
+      const V far = hn::Load(d, far_ends(parts, i));
       const M touches = hn::And(hn::Le(near, part.far), hn::Ge(far, part.near));
       part.near = hn::IfThenElse(touches, hn::Min(part.near, near), part.near);
       part.far = hn::IfThenElse(touches, hn::Max(part.far, far), part.far);
@@ -54,8 +61,8 @@ HWY_INLINE V start_of(const RobotRow& row, int u, const Rays& rays, V first, std
   if (row.reading_m != nullptr) {
     const V reading = hn::Load(d, row.reading_m + u);
     for (std::size_t i = 0; i < count; ++i) {
-      const V near = hn::Load(d, row.scratch + 2 * kLanes * i);
-      const V far = hn::Load(d, row.scratch + 2 * kLanes * i + kLanes);
+      const V near = hn::Load(d, near_ends(row.scratch, i));
+      const V far = hn::Load(d, far_ends(row.scratch, i));
       start = hn::IfThenElse(hn::And(hn::Le(near, reading), hn::Ge(far, reading)), reading, start);
     }
   }
@@ -71,11 +78,13 @@ HWY_INLINE Ends answer_of(const RobotRow& row, int u) {
   rays.inverse_square = hn::Div(hn::Set(d, 1.0F), square);
   Ends all{hn::Set(d, kInf), hn::Set(d, -kInf)};
   std::size_t count = 0;
+  float* next = row.scratch;
   for (std::size_t i = 0; i < row.count; ++i) {
     Ends padded;
     if (in_span(row, i, u, n) && part_of(rays, row.capsules[i], row.capsules[i].padded_square, &padded)) {
-      hn::Store(padded.near, d, row.scratch + 2 * kLanes * count);
-      hn::Store(padded.far, d, row.scratch + 2 * kLanes * count + kLanes);
+      hn::Store(padded.near, d, next);
+      hn::Store(padded.far, d, next + kLanes);
+      next += 2 * std::ptrdiff_t{kLanes};
       ++count;
       all = {hn::Min(all.near, padded.near), hn::Max(all.far, padded.far)};
     }
