@@ -100,7 +100,8 @@ void apply_interference(std::span<const StructuredLightUnit> units, std::size_t 
     const int height = unit.camera.height_px;
     for (int v = -reach; v < height + reach; ++v) {
       for (int u = -reach; u < width + reach; ++u) {
-        const auto number = static_cast<std::uint64_t>((v + reach) * (width + 2 * reach) + (u + reach));
+        const std::uint64_t row = static_cast<std::uint64_t>(v) + reach;
+        const std::uint64_t number = row * (static_cast<std::uint64_t>(width) + 2 * reach) + u + reach;
         if (random.uniform(number) >= centre_share) {
           continue;
         }

@@ -50,6 +50,25 @@ void read_units(MocapWords& words, MocapSkeleton& skeleton) {
   }
 }
 
+std::vector<int> read_turns(MocapWords& words, const std::string& bone) {
+  std::vector<int> turns;
+  while (words.on_same_line()) {
+    const std::string dof = words.take();
+    if (dof != "rx" && dof != "ry" && dof != "rz") {
+      words.refuse("bone '" + bone + "' moves in '" + dof + "', must be rx, ry or rz");
+    }
+    turns.push_back(dof[1] - 'x');
+  }
+  return turns;
+}
+
+/// What follows a key: the rest of its line, and lines of limits in brackets.
+void skip_value(MocapWords& words) {
+  while (!words.at_end() && words.peek() != "end" && (words.on_same_line() || words.peek().front() == '(')) {
+    (void)words.take();
+  }
+}
+
 MocapBone read_bone(MocapWords& words, const MocapSkeleton& skeleton) {
   MocapBone bone;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -68,17 +87,9 @@ MocapBone read_bone(MocapWords& words, const MocapSkeleton& skeleton) {
         words.refuse("axis of bone '" + bone.name + "' is not in the order XYZ");
       }
     } else if (key == "dof") {
-      while (words.on_same_line()) {
-        const std::string dof = words.take();
-        if (dof != "rx" && dof != "ry" && dof != "rz") {
-          words.refuse("bone '" + bone.name + "' moves in '" + dof + "', must be rx, ry or rz");
-        }
-        bone.turns.push_back(dof[1] - 'x');
-      }
-    } else {  // id, limits, masses: not needed
-      while (!words.at_end() && words.peek() != "end" && (words.on_same_line() || words.peek().front() == '(')) {
-        (void)words.take();
-      }
+      bone.turns = read_turns(words, bone.name);
+    } else {
+      skip_value(words);  // id, limits, masses
     }
   }
   if (bone.name.empty() || !(length_m >= 0 && length_m <= kLongestBone) || !(direction.norm() > 0.5)) {
@@ -194,7 +205,7 @@ MocapJoints joints(const MocapSkeleton& skeleton, const MocapFrame& frame) {
     const Eigen::Matrix3d axis = turn(bone.axis_rad);
     const Eigen::Matrix3d& parent = bone.parent ? rotations[*bone.parent] : root;
     const Eigen::Vector3d start_m = bone.parent ? result.end_m[*bone.parent] : frame.root_m;
-    rotations.push_back(parent * axis * turn(frame.turn_rad[i]) * axis.transpose());
+    rotations.emplace_back(parent * axis * turn(frame.turn_rad[i]) * axis.transpose());
     result.start_m.push_back(start_m);
     result.end_m.emplace_back(start_m + rotations.back() * bone.along_m);
   }

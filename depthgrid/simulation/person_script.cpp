@@ -117,7 +117,7 @@ PersonScript::PersonScript(Motion motion, const PersonStage& stage, std::uint64_
   }
 }
 
-PersonConfiguration PersonScript::between(const Segment& segment, double share) const noexcept {
+PersonConfiguration PersonScript::between(const Segment& segment, double share) noexcept {
   const PersonConfiguration& from = segment.from;
   const PersonConfiguration& to = segment.to;
   PersonConfiguration result = from;

@@ -64,10 +64,10 @@ class PersonScript {
   struct Segment {
     PersonConfiguration from;
     PersonConfiguration to;
-    double start_s;
-    double moving_s;
+    double start_s = 0;
+    double moving_s = 0;
   };
-  [[nodiscard]] PersonConfiguration between(const Segment& segment, double share) const noexcept;
+  [[nodiscard]] static PersonConfiguration between(const Segment& segment, double share) noexcept;
   [[nodiscard]] PersonState state(const PersonConfiguration& configuration) const noexcept;
   [[nodiscard]] double least_duration_s(const Segment& segment, double speed_m_s) const noexcept;
 

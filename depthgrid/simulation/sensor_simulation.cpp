@@ -57,6 +57,12 @@ bool asks_slant(const SensorSimulation& s) {
 /// theta / (pi/2 - theta), which grows without limit towards grazing views.
 double steepness(double slant_rad) { return slant_rad / std::max(1e-3, kPi / 2 - slant_rad); }
 
+/// Of a number of at most a million.
+int nearest_integer(double x) {
+  constexpr double kShift = 1 << 20;  // so that cutting off is rounding down
+  return static_cast<int>(x + kShift + 0.5) - static_cast<int>(kShift);
+}
+
 /// Between -1 and 1 in every pixel, with half a wave to a whole one across the image, another for each seed.
 std::vector<float> smooth_pattern(const PinholeCamera& camera, std::uint64_t seed) {
   const PixelRandom random(seed, 0, kBias);
@@ -77,43 +83,40 @@ std::vector<float> smooth_pattern(const PinholeCamera& camera, std::uint64_t see
 
 double noise_sigma_m(const SensorSimulation& s, double depth_m, double slant_rad) noexcept {
   const double beyond = depth_m - s.noise_origin_m;
+  const double facing_m = s.noise_constant_m + s.noise_quadratic_per_m * beyond * beyond;
+  if (s.noise_slant == 0) {
+    return facing_m;
+  }
   const double steep = steepness(slant_rad);
-  return s.noise_constant_m + s.noise_quadratic_per_m * beyond * beyond +
-         s.noise_slant / std::sqrt(depth_m) * steep * steep;
+  return facing_m + s.noise_slant / std::sqrt(depth_m) * steep * steep;
 }
-
-/// The ideal pixel that a pixel shows.
-struct SimulatedSensor::Source {
-  int u;
-  int v;
-  double slant_rad;
-};
 
 SimulatedSensor::SimulatedSensor(SensorSimulation sensor, const PinholeCamera& camera, std::uint64_t seed)
     : sensor_(std::move(sensor)), camera_(camera), seed_(seed) {
   depthgrid::validate(camera_);
   validate(sensor_);
   hidden_.resize(static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px));
+  slant_rad_.resize(hidden_.size());
   if (sensor_.bias_constant_m > 0 || sensor_.bias_linear > 0) {
     bias_ = smooth_pattern(camera_, seed_);
   }
 }
 
-double SimulatedSensor::reading_m(const DepthImage& ideal_m, const Source& source, std::uint64_t dice) const noexcept {
+double SimulatedSensor::reading_m(double ideal_m, std::size_t source, std::uint64_t dice) const noexcept {
   const SensorSimulation& s = sensor_;
-  double z = ideal_m.at(source.u, source.v);
-  if (s.flying_share > 0) {
-    const EdgeDepths edge = depths_around(ideal_m, source.u, source.v);
-    if (edge.is_edge() && uniform_of(scrambled(dice), 0) < s.flying_share) {
-      z = edge.near_m + uniform_of(scrambled(dice), 1) * (edge.far_m - edge.near_m);
+  double z = ideal_m;
+  if (s.flying_share > 0 && edges_.is_edge(source)) {
+    const std::uint64_t flight = scrambled(dice);
+    if (uniform_of(flight, 0) < s.flying_share) {
+      z = edges_.near_m(source) + uniform_of(flight, 1) * (edges_.far_m(source) - edges_.near_m(source));
     }
   }
-  z += noise_sigma_m(s, z, source.slant_rad) * normal_of(dice, 0);
+  z += noise_sigma_m(s, z, slant_rad_[source]) * normal_of(dice, 0);
   if (!bias_.empty()) {
-    z += (s.bias_constant_m + s.bias_linear * z) * bias_[ideal_m.index(source.u, source.v)];
+    z += (s.bias_constant_m + s.bias_linear * z) * bias_[source];
   }
   if (s.step_per_m > 0 && z > 0) {
-    const double steps = std::round(1 / (z * s.step_per_m));
+    const double steps = std::floor(1 / (z * s.step_per_m) + 0.5);
     z = steps > 0 ? 1 / (steps * s.step_per_m) : 0;
   }
   return z;
@@ -132,38 +135,40 @@ void SimulatedSensor::measure(const DepthImage& ideal_m, std::uint64_t frame, De
   if (s.baseline_m > 0) {
     mark_hidden_from_second_view(camera_, ideal_m, s.baseline_m, hidden_);
   }
+  if (asks_slant(s)) {
+    surface_slants(camera_, ideal_m, slant_rad_);
+  }
+  if (s.flying_share > 0) {
+    edges_.update(ideal_m);
+  }
   const PixelRandom lateral(seed_, frame, kLateral);
   const PixelRandom axial(seed_, frame, kAxial);
   const PixelRandom dropout(seed_, frame, kDropout);
   const std::uint64_t shake = PixelRandom(seed_, frame, kVibration).bits(0);
   const double shake_u = s.vibration_px * (2 * uniform_of(shake, 0) - 1) / std::numbers::sqrt2;
   const double shake_v = s.vibration_px * (2 * uniform_of(shake, 1) - 1) / std::numbers::sqrt2;
-  const bool slanted = asks_slant(s);
   const bool displaced = s.lateral_px > 0 || s.lateral_slant_px > 0 || s.vibration_px > 0;
   for (int v = 0; v < camera_.height_px; ++v) {
     for (int u = 0; u < camera_.width_px; ++u) {
-      const std::uint64_t patch = ideal_m.index(u / s.patch_px, v / s.patch_px);
-      const std::uint64_t aside = lateral.bits(patch);
-      Source source{u, v, slanted ? surface_slant_rad(camera_, ideal_m, u, v) : 0.0};
+      const std::size_t pixel = ideal_m.index(u, v);
+      const std::size_t patch = s.patch_px == 1 ? pixel : ideal_m.index(u / s.patch_px, v / s.patch_px);
+      std::size_t source = pixel;  // the ideal pixel that this one shows
       if (displaced) {
-        const double sigma_px = s.lateral_px + s.lateral_slant_px * steepness(source.slant_rad);
-        const auto offset = [&s, sigma_px, aside](unsigned n) {
-          return std::clamp(sigma_px * normal_of(aside, n), -s.lateral_limit_px, s.lateral_limit_px);
+        const std::uint64_t aside = lateral.bits(patch);
+        const double sigma_px = s.lateral_px + s.lateral_slant_px * steepness(slant_rad_[pixel]);
+        const auto beside = [&s, sigma_px, aside](int at, unsigned n, double shake_px, int size) {
+          const double offset_px = std::clamp(sigma_px * normal_of(aside, n), -s.lateral_limit_px, s.lateral_limit_px);
+          return std::clamp(nearest_integer(at + offset_px + shake_px), 0, size - 1);
         };
-        source.u = std::clamp(static_cast<int>(std::lround(u + offset(0) + shake_u)), 0, camera_.width_px - 1);
-        source.v = std::clamp(static_cast<int>(std::lround(v + offset(1) + shake_v)), 0, camera_.height_px - 1);
-        source.slant_rad = slanted ? surface_slant_rad(camera_, ideal_m, source.u, source.v) : 0.0;
+        source = ideal_m.index(beside(u, 0, shake_u, camera_.width_px), beside(v, 1, shake_v, camera_.height_px));
       }
-      float& measured = measured_m.at(u, v);
+      float& measured = measured_m.data()[pixel];
       measured = 0;
-      if (!(ideal_m.at(source.u, source.v) > 0) || hidden_[ideal_m.index(source.u, source.v)] != 0 ||
-          source.slant_rad > s.largest_slant_rad) {
+      if (!(ideal_m.data()[source] > 0) || hidden_[source] != 0 || slant_rad_[source] > s.largest_slant_rad ||
+          (s.dropout_share > 0 && dropout.uniform(pixel) < s.dropout_share)) {
         continue;
       }
-      if (s.dropout_share > 0 && dropout.uniform(ideal_m.index(u, v)) < s.dropout_share) {
-        continue;
-      }
-      const double z = reading_m(ideal_m, source, axial.bits(patch));
+      const double z = reading_m(ideal_m.data()[source], source, axial.bits(patch));
       measured = z > 0 && z >= s.near_m && z <= s.far_m ? static_cast<float>(z) : 0.0F;
     }
   }

@@ -10,6 +10,7 @@
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/depth_image.hpp"
+#include "depthgrid/simulation/surface_slant.hpp"
 
 namespace depthgrid::simulation {
 
@@ -75,14 +76,16 @@ class SimulatedSensor {
   [[nodiscard]] std::uint64_t seed() const noexcept { return seed_; }
 
  private:
-  struct Source;
-  [[nodiscard]] double reading_m(const DepthImage& ideal_m, const Source& source, std::uint64_t dice) const noexcept;
+  [[nodiscard]] double reading_m(double ideal_m, std::size_t source, std::uint64_t dice) const noexcept;
 
   SensorSimulation sensor_;
   PinholeCamera camera_;
   std::uint64_t seed_;
   std::vector<float> bias_;  ///< the smooth function; empty without systematic error
+  // Of the ideal image that is being measured.
   std::vector<std::uint8_t> hidden_;
+  std::vector<float> slant_rad_;  ///< all 0 where the slant decides nothing
+  EdgeDepths edges_;
 };
 
 /// The image as a sensor's driver delivers it: whole units, 0 where nothing was measured or the depth needs more than

@@ -1,55 +1,99 @@
 #include "depthgrid/simulation/surface_slant.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace depthgrid::simulation {
 
 namespace {
 
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+/// Arc tangent of t >= 0 to 1e-5 (Abramowitz and Stegun 4.4.49).
+float arc_tangent(float t) {
+  const bool steep = t > 1;
+  const float x = steep ? 1 / t : t;
+  const float x2 = x * x;
+  const float small = x * (0.9998660F + x2 * (-0.3302995F + x2 * (0.1801410F + x2 * (-0.0851330F + x2 * 0.0208351F))));
+  return steep ? 0.5F * std::numbers::pi_v<float> - small : small;
+}
+
 /// Slope of the inverse depth, which is linear in the image on a plane, from the flatter side; 0 without neighbours.
-double inverse_slope(float before, float here, float after) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const double from_before = before > 0 ? 1.0 / here - 1.0 / before : kNone;
-  const double to_after = after > 0 ? 1.0 / after - 1.0 / here : kNone;
-  const double flatter = std::abs(from_before) < std::abs(to_after) ? from_before : to_after;
-  return std::isinf(flatter) ? 0.0 : flatter;
+/// An inverse depth of 0 is none.
+float slope(float before, float here, float after) {
+  const float from_before = before > 0 ? here - before : kFar;
+  const float to_after = after > 0 ? after - here : kFar;
+  const float flatter = std::abs(from_before) < std::abs(to_after) ? from_before : to_after;
+  return std::abs(flatter) < kFar ? flatter : 0.0F;
 }
 
 }  // namespace
 
-double surface_slant_rad(const PinholeCamera& camera, const DepthImage& depth_m, int u, int v) noexcept {
-  const float here = depth_m.at(u, v);
-  if (!(here > 0)) {
-    return 0;
-  }
-  const auto depth = [&depth_m, &camera](int at_u, int at_v) {
-    return camera.contains(at_u, at_v) ? depth_m.at(at_u, at_v) : 0.0F;
-  };
-  // A plane n . p = 1 has 1/z = n_x (u - cx) / fx + n_y (v - cy) / fy + n_z.
-  const double nx = camera.fx_px * inverse_slope(depth(u - 1, v), here, depth(u + 1, v));
-  const double ny = camera.fy_px * inverse_slope(depth(u, v - 1), here, depth(u, v + 1));
-  const double nz =
-      1.0 / here - nx * (u + 0.5 - camera.cx_px) / camera.fx_px - ny * (v + 0.5 - camera.cy_px) / camera.fy_px;
-  return std::atan2(std::hypot(nx, ny), std::abs(nz));
-}
-
-EdgeDepths depths_around(const DepthImage& depth_m, int u, int v) noexcept {
-  EdgeDepths result;
-  const int last_u = std::min(u + 1, depth_m.width_px() - 1);
-  const int last_v = std::min(v + 1, depth_m.height_px() - 1);
-  for (int y = std::max(0, v - 1); y <= last_v; ++y) {
-    for (int x = std::max(0, u - 1); x <= last_u; ++x) {
-      const float z = depth_m.at(x, y);
-      if (z > 0) {
-        result.near_m = result.near_m > 0 ? std::min(result.near_m, z) : z;
-        result.far_m = std::max(result.far_m, z);
+void surface_slants(const PinholeCamera& camera, const DepthImage& depth_m, std::vector<float>& slant_rad) {
+  const int width = depth_m.width_px();
+  const int height = depth_m.height_px();
+  slant_rad.assign(depth_m.index(0, height), 0.0F);
+  DepthImage inverse(width, height);
+  std::transform(depth_m.data(), depth_m.data() + slant_rad.size(), inverse.data(),
+                 [](float z) { return z > 0 ? 1 / z : 0.0F; });
+  const auto fx = static_cast<float>(camera.fx_px);
+  const auto fy = static_cast<float>(camera.fy_px);
+  for (int v = 0; v < height; ++v) {
+    const float* const here = inverse.data() + inverse.index(0, v);
+    const float* const above = v > 0 ? here - width : nullptr;
+    const float* const below = v + 1 < height ? here + width : nullptr;
+    float* const slant = slant_rad.data() + inverse.index(0, v);
+    const float y = (static_cast<float>(v) + 0.5F - static_cast<float>(camera.cy_px));
+    for (int u = 0; u < width; ++u) {
+      if (here[u] <= 0) {
+        continue;
       }
+      // A plane n . p = 1 has 1/z = n_x (u - cx) / fx + n_y (v - cy) / fy + n_z.
+      const float per_column = slope(u > 0 ? here[u - 1] : 0, here[u], u + 1 < width ? here[u + 1] : 0);
+      const float per_row = slope(above != nullptr ? above[u] : 0, here[u], below != nullptr ? below[u] : 0);
+      const float x = static_cast<float>(u) + 0.5F - static_cast<float>(camera.cx_px);
+      const float nz = here[u] - per_column * x - per_row * y;
+      const float nx = fx * per_column;
+      const float ny = fy * per_row;
+      slant[u] = arc_tangent(std::sqrt(nx * nx + ny * ny) / std::max(std::abs(nz), 1e-9F));
     }
   }
-  return result;
+}
+
+void EdgeDepths::update(const DepthImage& depth_m) {
+  const auto width = static_cast<std::size_t>(depth_m.width_px());
+  const auto height = static_cast<std::size_t>(depth_m.height_px());
+  for (std::vector<float>* buffer : {&near_m_, &far_m_, &row_near_m_, &row_far_m_}) {
+    buffer->resize(width * height);
+  }
+  // Along the rows, then along the columns; for the nearest, no depth is infinitely far.
+  const auto none_is_far = [](float z) {
+    if (z > 0) {
+      return z;
+    }
+    return kFar;
+  };
+  for (std::size_t v = 0; v < height; ++v) {
+    const float* const z = depth_m.data() + v * width;
+    for (std::size_t u = 0; u < width; ++u) {
+      const float left = z[u > 0 ? u - 1 : u];
+      const float right = z[u + 1 < width ? u + 1 : u];
+      row_near_m_[v * width + u] = std::min({none_is_far(left), none_is_far(z[u]), none_is_far(right)});
+      row_far_m_[v * width + u] = std::max({left, z[u], right});
+    }
+  }
+  for (std::size_t v = 0; v < height; ++v) {
+    const std::size_t above = (v > 0 ? v - 1 : v) * width;
+    const std::size_t here = v * width;
+    const std::size_t below = (v + 1 < height ? v + 1 : v) * width;
+    for (std::size_t u = 0; u < width; ++u) {
+      const float nearest = std::min({row_near_m_[above + u], row_near_m_[here + u], row_near_m_[below + u]});
+      near_m_[here + u] = nearest < kFar ? nearest : 0.0F;
+      far_m_[here + u] = std::max({row_far_m_[above + u], row_far_m_[here + u], row_far_m_[below + u]});
+    }
+  }
 }
 
 }  // namespace depthgrid::simulation
