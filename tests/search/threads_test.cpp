@@ -83,7 +83,7 @@ Told told(const std::vector<Answer>& answers) {
 
 TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
   const test::RandomRun run = test::random_run(3);
-  for (std::int64_t problem = 0; problem < std::min<std::int64_t>(run.count, 5); ++problem) {
+  for (std::int64_t problem = 0; problem < std::min<std::int64_t>(run.count, 3); ++problem) {
     const Deliveries deliveries(run.seed + 10 * static_cast<std::uint64_t>(problem));
     const std::vector<Primitive> primitives = some_primitives();
     std::vector<Told> legal;
