@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <sstream>
+#include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/mesh_path.hpp"
@@ -42,7 +43,7 @@ double positive(double value, const char* what, const std::string& context) {
 /// Reads one file's robot; `source` begins its messages.
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const UrdfOptions& options) : file_(file), options_(options) {}
+  Reader(std::filesystem::path file, const UrdfOptions& options) : file_(std::move(file)), options_(options) {}
 
   [[nodiscard]] LinkDescription link(const urdf::Link& link) const {
     LinkDescription result;
