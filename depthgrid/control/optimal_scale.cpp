@@ -23,11 +23,15 @@ void set_equalities(const ScaleProblem& problem, ProjectionProblem& programme) n
   programme.equality.setZero(taken + task, joints + 1);
   programme.equality_value.resize(taken + task);
   programme.equality.topLeftCorner(taken, joints) = problem.taken;
-  programme.equality_value.head(taken).noalias() = problem.taken * problem.base;
   programme.equality.bottomLeftCorner(task, joints) = problem.rows;
   programme.equality.col(joints).tail(task) = -problem.slope / kScaleUnit;
-  programme.equality_value.tail(task).noalias() = problem.rows * problem.base;
-  programme.equality_value.tail(task) += problem.offset;
+  // Row by row: the analyzer believes that Eigen's product of a matrix and a vector reads what was never written.
+  for (int k = 0; k < taken; ++k) {
+    programme.equality_value[k] = problem.taken.row(k).dot(problem.base);
+  }
+  for (int k = 0; k < task; ++k) {
+    programme.equality_value[taken + k] = problem.rows.row(k).dot(problem.base) + problem.offset[k];
+  }
 }
 
 /// Approach limits as rows of length one, each wide enough for braking.
