@@ -9,6 +9,7 @@
 #include <random>
 
 #include "input/temporary_folder.hpp"
+#include "support/random_run.hpp"
 
 namespace depthgrid::input {
 namespace {
@@ -61,12 +62,10 @@ TEST(Png, GivesBackAll65536Values) {
 }
 
 TEST(Png, RandomSizesAndPixelsRoundTrip) {
-  const char* seed_text = std::getenv("DEPTHGRID_TEST_SEED");
-  const char* count_text = std::getenv("DEPTHGRID_TEST_COUNT");
-  const unsigned seed = seed_text != nullptr ? static_cast<unsigned>(std::strtoul(seed_text, nullptr, 10)) : 1U;
-  const int count = count_text != nullptr ? std::atoi(count_text) : 50;
+  const test::RandomRun random_run = test::random_run(50);
+  const auto seed = static_cast<unsigned>(random_run.seed);
   const TemporaryFolder folder;
-  for (int run = 0; run < count; ++run) {
+  for (int run = 0; run < random_run.count; ++run) {
     std::mt19937 random(seed + static_cast<unsigned>(run));
     const int width = std::uniform_int_distribution<int>(1, 90)(random);
     const int height = std::uniform_int_distribution<int>(1, 70)(random);

@@ -10,6 +10,7 @@
 #include "depthgrid/core/sensor_models.hpp"
 #include "input/rig_text.hpp"
 #include "input/temporary_folder.hpp"
+#include "support/random_run.hpp"
 
 namespace depthgrid::input {
 namespace {
@@ -250,11 +251,10 @@ RigFile random_rig(unsigned seed) {
 }
 
 TEST(RigFile, WritingAndLoadingGivesTheSameRig) {
-  const char* seed_text = std::getenv("DEPTHGRID_TEST_SEED");
-  const char* count_text = std::getenv("DEPTHGRID_TEST_COUNT");
-  const unsigned first = seed_text != nullptr ? static_cast<unsigned>(std::strtoul(seed_text, nullptr, 10)) : 1U;
-  const int count = count_text != nullptr ? std::atoi(count_text) : 200;
-  for (unsigned seed = first; seed < first + static_cast<unsigned>(count); ++seed) {
+  const test::RandomRun random_run = test::random_run(200);
+  const auto first = static_cast<unsigned>(random_run.seed);
+  const auto count = static_cast<unsigned>(random_run.count);
+  for (unsigned seed = first; seed < first + count; ++seed) {
     const RigFile file = random_rig(seed);
     const std::string text = to_json(file);
     expect_same(file, parse_rig(text, "written"));

@@ -13,20 +13,14 @@
 #include <vector>
 
 #include "depthgrid/simulation/scene.hpp"
+#include "support/random_run.hpp"
 
 namespace depthgrid::simulation::testing {
 
-/// DEPTHGRID_TEST_SEED, default 1. Every case has the seed `seed() + case number`, so a printed seed repeats a case.
-inline unsigned long seed() {
-  const char* text = std::getenv("DEPTHGRID_TEST_SEED");
-  return text != nullptr ? std::strtoul(text, nullptr, 10) : 1UL;
-}
+/// Every case has the seed `seed() + case number`, so a printed seed repeats a case.
+inline unsigned long seed() { return test::random_run(1).seed; }
 
-/// DEPTHGRID_TEST_COUNT, else `standard`.
-inline int count(int standard) {
-  const char* text = std::getenv("DEPTHGRID_TEST_COUNT");
-  return text != nullptr ? std::max(1, std::atoi(text)) : standard;
-}
+inline int count(int standard) { return static_cast<int>(test::random_run(standard).count); }
 
 /// Negative inside, metres; exact outside.
 using SignedDistance = std::function<double(const Eigen::Vector3d&)>;

@@ -1,5 +1,6 @@
 #include "support/random_run.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <stdexcept>
@@ -7,6 +8,9 @@
 
 namespace depthgrid::test {
 namespace {
+
+/// What a divisor leaves at least.
+constexpr std::int64_t kFewest = 5;
 
 template <class Integer>
 Integer from_environment(const char* name, Integer default_value, Integer smallest) {
@@ -31,8 +35,10 @@ std::string RandomRun::reproduce() const {
 }
 
 RandomRun random_run(std::int64_t default_count) {
+  const auto divisor = from_environment<std::int64_t>("DEPTHGRID_TEST_DIVISOR", 1, 1);
+  const std::int64_t fewer = std::max(default_count / divisor, std::min<std::int64_t>(default_count, kFewest));
   return {from_environment<std::uint64_t>("DEPTHGRID_TEST_SEED", 1, 0),
-          from_environment<std::int64_t>("DEPTHGRID_TEST_COUNT", default_count, 1)};
+          from_environment<std::int64_t>("DEPTHGRID_TEST_COUNT", fewer, 1)};
 }
 
 }  // namespace depthgrid::test

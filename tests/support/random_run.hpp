@@ -15,8 +15,9 @@ struct RandomRun {
   [[nodiscard]] std::string reproduce() const;
 };
 
-/// DEPTHGRID_TEST_SEED (default 1) and DEPTHGRID_TEST_COUNT (default `default_count`). Throws std::invalid_argument
-/// when one of them is set but is not a whole number in range.
+/// DEPTHGRID_TEST_SEED (default 1) and DEPTHGRID_TEST_COUNT (default `default_count`, or where DEPTHGRID_TEST_DIVISOR
+/// is set that part of it, for instrumented builds). Throws std::invalid_argument when one of them is set but is not a
+/// whole number in range.
 [[nodiscard]] RandomRun random_run(std::int64_t default_count);
 
 }  // namespace depthgrid::test

@@ -49,6 +49,16 @@ TEST(RandomRun, ListensToTheEnvironmentAndSaysHowToRepeat) {
   EXPECT_EQ(random_run(77).reproduce(), "DEPTHGRID_TEST_SEED=18446744073709551615 DEPTHGRID_TEST_COUNT=5000000");
 }
 
+TEST(RandomRun, ADivisorLeavesAPartOfTheDefaultButNotOfACount) {
+  const Variable divisor("DEPTHGRID_TEST_DIVISOR", "10");
+  const Variable none("DEPTHGRID_TEST_COUNT", nullptr);
+  EXPECT_EQ(random_run(1000).count, 100);
+  EXPECT_EQ(random_run(20).count, 5);
+  EXPECT_EQ(random_run(3).count, 3);
+  const Variable count("DEPTHGRID_TEST_COUNT", "40");
+  EXPECT_EQ(random_run(1000).count, 40);
+}
+
 TEST(RandomRun, RefusesWhatIsNoNumber) {
   for (const char* text : {"", "x", "1e6", "0", "-3", " 5", "99999999999999999999"}) {
     const Variable count("DEPTHGRID_TEST_COUNT", text);
