@@ -185,7 +185,7 @@ ProjectionStatus Projection::solve() noexcept {
   is_active_.fill(false);
   active_ = 0;
   steps_ = 0;
-  const int most_steps = 10 * static_cast<int>(2 * n + problem_.inequality.rows());
+  const int most_steps = 10 * (2 * n + static_cast<int>(problem_.inequality.rows()));
   ProjectionStatus status = take_equalities();
   while (status == ProjectionStatus::solved) {
     const int constraint = most_violated();

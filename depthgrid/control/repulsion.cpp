@@ -12,7 +12,7 @@ constexpr double kLargestAlpha = 100.0;
 
 /// Towards the obstacles; at most of length 1.
 Eigen::Vector3d direction_of(const Obstacle& obstacle, RepulsionForm form) noexcept {
-  const Eigen::Vector3d nearest = obstacle.direction_world.value_or(Eigen::Vector3d::Zero());
+  Eigen::Vector3d nearest = obstacle.direction_world.value_or(Eigen::Vector3d::Zero());
   const Eigen::Vector3d& hybrid = obstacle.hybrid_direction_world;
   switch (form) {
     case RepulsionForm::nearest:
