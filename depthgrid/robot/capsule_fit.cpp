@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "depthgrid/core/error.hpp"
 
@@ -26,12 +27,12 @@ using Parameters = std::array<double, 5>;
 /// The capsule of these parameters that just contains the points.
 class Family {
  public:
-  Family(std::span<const Vector3d> points, const Vector3d& centre, const Vector3d& direction) : points_(points) {
-    centre_ = centre;
-    z_ = direction;
-    x_ = direction.unitOrthogonal();
-    y_ = z_.cross(x_);
-  }
+  Family(std::span<const Vector3d> points, Vector3d centre, Vector3d direction)
+      : points_(points),
+        centre_(std::move(centre)),
+        z_(std::move(direction)),
+        x_(z_.unitOrthogonal()),
+        y_(z_.cross(x_)) {}
 
   [[nodiscard]] Capsule operator()(const Parameters& p) const {
     const Vector3d along = (z_ + p[0] * x_ + p[1] * y_).normalized();
@@ -64,9 +65,9 @@ class Family {
 Capsule descend(const Family& family, double size_m) {
   Parameters at{};
   double least = volume(family(at));
-  double step = 0.3;
   constexpr int kHalvings = 15;
-  for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double step = std::ldexp(0.3, -halving);
     for (bool better = true; better;) {
       better = false;
       for (std::size_t i = 0; i < at.size(); ++i) {
