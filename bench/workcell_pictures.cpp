@@ -70,7 +70,7 @@ std::vector<Tile> recorded_walk() {
   }
   const auto clip = depthgrid::simulation::MocapClip::load(folder / "02.asf", folder / "02_01.amc");
   depthgrid::Pose T_world_floor = depthgrid::Pose::Identity();
-  T_world_floor.translation() = Eigen::Vector3d(0.4, -1.0, -0.5) - clip.middle_m();
+  T_world_floor.translation() = Eigen::Vector3d(0.7, -0.5, -0.5) - clip.middle_m();
   depthgrid::simulation::Workcell cell = depthgrid::simulation::empty_workcell();
   cell.bodies.push_back(capsule_body("arm", depthgrid::simulation::BodyKind::robot, WorkcellScene::arm_at(0).links));
   cell.bodies.push_back(capsule_body("walker", depthgrid::simulation::BodyKind::person,
@@ -93,7 +93,7 @@ std::vector<Tile> sensors() {
   };
   const std::array<Row, 6> rows{{{"ideal", "ideal", {}, 1},
                                  {"kinect_v1 alone", "kinect_v1", {}, 1},
-                                 {"kinect_v1, another one opposite", "kinect_v1", {}, 2},
+                                 {"kinect_v1, another one beside it", "kinect_v1", {}, 2},
                                  {"the same, the other one vibrates", "kinect_v1", {false, true}, 2},
                                  {"realsense_d435", "realsense_d435", {}, 1},
                                  {"azure_kinect_nfov", "azure_kinect_nfov", {}, 1}}};
@@ -101,8 +101,8 @@ std::vector<Tile> sensors() {
   const depthgrid::workcell::DepthCaster caster(scene.at(0.5 * scene.person().duration_s()));
   std::vector<Tile> tiles;
   for (const Row& row : rows) {
-    depthgrid::Rig rig = depthgrid::simulation::letter_arrangement(row.sensor).rig;
-    rig.cameras.resize(row.cameras);
+    depthgrid::Rig rig = depthgrid::simulation::arrangement(8, row.sensor).rig;
+    rig.cameras.resize(row.cameras);  // the second one stands beside the first, 1.8 m away
     std::vector<DepthImage> ideal(row.cameras);
     std::vector<DepthImage> measured(row.cameras);
     for (std::size_t k = 0; k < row.cameras; ++k) {

@@ -87,7 +87,7 @@ double noise_sigma_m(const SensorSimulation& s, double depth_m, double slant_rad
   if (s.noise_slant == 0) {
     return facing_m;
   }
-  const double steep = steepness(slant_rad);
+  const double steep = steepness(std::min(slant_rad, s.largest_slant_rad));
   return facing_m + s.noise_slant / std::sqrt(depth_m) * steep * steep;
 }
 
@@ -155,7 +155,8 @@ void SimulatedSensor::measure(const DepthImage& ideal_m, std::uint64_t frame, De
       std::size_t source = pixel;  // the ideal pixel that this one shows
       if (displaced) {
         const std::uint64_t aside = lateral.bits(patch);
-        const double sigma_px = s.lateral_px + s.lateral_slant_px * steepness(slant_rad_[pixel]);
+        const double sigma_px =
+            s.lateral_px + s.lateral_slant_px * steepness(std::min<double>(slant_rad_[pixel], s.largest_slant_rad));
         const auto beside = [&s, sigma_px, aside](int at, unsigned n, double shake_px, int size) {
           const double offset_px = std::clamp(sigma_px * normal_of(aside, n), -s.lateral_limit_px, s.lateral_limit_px);
           return std::clamp(nearest_integer(at + offset_px + shake_px), 0, size - 1);

@@ -19,7 +19,7 @@ struct SensorSimulation {
   std::string name = "ideal";
 
   /// Axial noise: standard deviation constant + quadratic (z - origin)^2 + slant_factor / sqrt(z) theta^2 / (pi/2 -
-  /// theta)^2, theta the angle between the surface's normal and the optical axis.
+  /// theta)^2, theta the angle between the surface's normal and the ray, at most largest_slant_rad.
   double noise_constant_m = 0;
   double noise_quadratic_per_m = 0;
   double noise_origin_m = 0;

@@ -1,5 +1,6 @@
 #include "depthgrid/simulation/surface_slant.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,19 +46,18 @@ void surface_slants(const PinholeCamera& camera, const DepthImage& depth_m, std:
     const float* const above = v > 0 ? here - width : nullptr;
     const float* const below = v + 1 < height ? here + width : nullptr;
     float* const slant = slant_rad.data() + inverse.index(0, v);
-    const float y = (static_cast<float>(v) + 0.5F - static_cast<float>(camera.cy_px));
+    const float y = (static_cast<float>(v) + 0.5F - static_cast<float>(camera.cy_px)) / fy;
     for (int u = 0; u < width; ++u) {
       if (here[u] <= 0) {
         continue;
       }
-      // A plane n . p = 1 has 1/z = n_x (u - cx) / fx + n_y (v - cy) / fy + n_z.
-      const float per_column = slope(u > 0 ? here[u - 1] : 0, here[u], u + 1 < width ? here[u + 1] : 0);
-      const float per_row = slope(above != nullptr ? above[u] : 0, here[u], below != nullptr ? below[u] : 0);
-      const float x = static_cast<float>(u) + 0.5F - static_cast<float>(camera.cx_px);
-      const float nz = here[u] - per_column * x - per_row * y;
-      const float nx = fx * per_column;
-      const float ny = fy * per_row;
-      slant[u] = arc_tangent(std::sqrt(nx * nx + ny * ny) / std::max(std::abs(nz), 1e-9F));
+      // On a plane n . p = 1 a ray r = (x, y, 1) has 1/z = n . r, and x and y are linear in the pixel.
+      const float nx = fx * slope(u > 0 ? here[u - 1] : 0, here[u], u + 1 < width ? here[u + 1] : 0);
+      const float ny = fy * slope(above != nullptr ? above[u] : 0, here[u], below != nullptr ? below[u] : 0);
+      const float x = (static_cast<float>(u) + 0.5F - static_cast<float>(camera.cx_px)) / fx;
+      const float nz = here[u] - nx * x - ny * y;
+      const Eigen::Vector3f across = Eigen::Vector3f(nx, ny, nz).cross(Eigen::Vector3f(x, y, 1));
+      slant[u] = arc_tangent(across.norm() / here[u]);
     }
   }
 }

@@ -9,7 +9,7 @@
 
 namespace depthgrid::simulation {
 
-/// Angle between the surface's normal and the optical axis in every pixel, in [0, pi/2], from the flatter one of the
+/// Angle between the surface's normal and the ray of each pixel, in [0, pi/2], from the flatter one of the
 /// differences to either side in row and column. Exact to 1e-4 rad on planes; 0 where there is no depth.
 void surface_slants(const PinholeCamera& camera, const DepthImage& depth_m, std::vector<float>& slant_rad);
 

@@ -16,7 +16,7 @@ using simulation::WorkcellBody;
 namespace {
 
 struct TruthBody {
-  BodyKind kind;
+  BodyKind kind = BodyKind::object;
   std::vector<Part> parts;
   std::vector<Plane> planes_world;
 };

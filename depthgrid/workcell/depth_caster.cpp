@@ -96,7 +96,7 @@ class Packet {
   }
 
   void cast(RTCScene scene) noexcept {
-    RTCIntersectContext context;
+    RTCIntersectContext context{};
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcIntersect16(active_.data(), scene, &context, &rays_);
@@ -171,21 +171,14 @@ void DepthCaster::Impl::cast_planes(const Rays& rays, DepthImage& depth_m, BodyI
     for (int v = 0; v < depth_m.height_px(); ++v) {
       const double falling = -normal.dot(rays.corner + v * rays.per_row);  // how fast the ray nears the plane
       float* const row = depth_m.data() + depth_m.index(0, v);
-      if (bodies == nullptr) {
-        for (int u = 0; u < width; ++u) {
-          const double speed = falling + u * per_column;
-          const float z = speed > 0 ? static_cast<float>(above / speed) : kNothing;
-          row[u] = std::min(row[u], z);
+      std::uint16_t* const seen = bodies != nullptr ? &bodies->body[depth_m.index(0, v)] : nullptr;
+      for (int u = 0; u < width; ++u) {
+        const double speed = falling + u * per_column;
+        const float z = speed > 0 ? static_cast<float>(above / speed) : kNothing;
+        if (seen != nullptr && z < row[u]) {
+          seen[u] = room.body;
         }
-      } else {
-        for (int u = 0; u < width; ++u) {
-          const double speed = falling + u * per_column;
-          const float z = speed > 0 ? static_cast<float>(above / speed) : kNothing;
-          if (z < row[u]) {
-            row[u] = z;
-            bodies->body[depth_m.index(u, v)] = room.body;
-          }
-        }
+        row[u] = std::min(row[u], z);
       }
     }
   }

@@ -17,15 +17,15 @@ constexpr std::size_t kBoxVertices = 8;
 constexpr std::size_t kBoxTriangles = 12;
 constexpr std::size_t kFloatsOfRound = 4;  ///< x, y, z, radius
 
-void put(float*& to, const Eigen::Vector3d& point) {
-  *to++ = static_cast<float>(point.x());
-  *to++ = static_cast<float>(point.y());
-  *to++ = static_cast<float>(point.z());
+void append(std::vector<float>& to, const Eigen::Vector3d& point) {
+  for (const double coordinate : point) {
+    to.push_back(static_cast<float>(coordinate));
+  }
 }
 
-void put(float*& to, const Eigen::Vector3d& point, double radius_m) {
-  put(to, point);
-  *to++ = static_cast<float>(radius_m);
+void append(std::vector<float>& to, const Eigen::Vector3d& point, double radius_m) {
+  append(to, point);
+  to.push_back(static_cast<float>(radius_m));
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ void EmbreeScene::check(const char* what) const {
 }
 
 RTCGeometry EmbreeScene::geometry(RTCGeometryType type) {
-  const RTCGeometry result = rtcNewGeometry(device_.get(), type);
+  auto* const result = rtcNewGeometry(device_.get(), type);
   if (result == nullptr) {
     fail("Embree gives no geometry of type ", type, ", error ", rtcGetDeviceError(device_.get()));
   }
@@ -142,35 +142,38 @@ void EmbreeScene::add_instance(const WorkcellBody& body, std::size_t index) {
   check("a mesh");
 }
 
-float* EmbreeScene::vertices(const Moving& moving) const {
-  return static_cast<float*>(rtcGetGeometryBufferData(moving.geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0));
+void EmbreeScene::rewrite(const Moving& moving, const std::vector<float>& vertices) {
+  if (moving.vertices > 0) {
+    RTCGeometry shape = moving.geometry.get();
+    std::copy(vertices.begin(), vertices.end(),
+              static_cast<float*>(rtcGetGeometryBufferData(shape, RTC_BUFFER_TYPE_VERTEX, 0)));
+    rtcUpdateGeometryBuffer(shape, RTC_BUFFER_TYPE_VERTEX, 0);
+    rtcCommitGeometry(shape);
+  }
 }
 
 void EmbreeScene::update(const Workcell& cell) {
-  float* capsule = capsules_.vertices > 0 ? vertices(capsules_) : nullptr;
-  float* sphere = spheres_.vertices > 0 ? vertices(spheres_) : nullptr;
-  float* box = boxes_.vertices > 0 ? vertices(boxes_) : nullptr;
+  std::vector<float> capsules;
+  std::vector<float> spheres;
+  std::vector<float> boxes;
   for (const WorkcellBody& body : cell.bodies) {
     const Pose& T = body.T_world_body;
     for (const simulation::Capsule& c : body.capsules) {
-      put(capsule, T * c.a_world, c.radius_m);
-      put(capsule, T * c.b_world, c.radius_m);
+      append(capsules, T * c.a_world, c.radius_m);
+      append(capsules, T * c.b_world, c.radius_m);
     }
     for (const simulation::Sphere& s : body.spheres) {
-      put(sphere, T * s.centre_world, s.radius_m);
+      append(spheres, T * s.centre_world, s.radius_m);
     }
     for (const simulation::Box& b : body.boxes) {
       for (const Eigen::Vector3f& p : mesh_of(transformed(T, b)).vertices_m) {
-        box = std::copy_n(p.data(), 3, box);
+        boxes.insert(boxes.end(), p.begin(), p.end());
       }
     }
   }
-  for (const Moving* moving : {&capsules_, &spheres_, &boxes_}) {
-    if (moving->vertices > 0) {
-      rtcUpdateGeometryBuffer(moving->geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0);
-      rtcCommitGeometry(moving->geometry.get());
-    }
-  }
+  rewrite(capsules_, capsules);
+  rewrite(spheres_, spheres);
+  rewrite(boxes_, boxes);
   for (const Instance& instance : instances_) {
     const Eigen::Matrix<float, 3, 4> transform =
         cell.bodies[instance.body].T_world_body.matrix().topRows<3>().cast<float>();

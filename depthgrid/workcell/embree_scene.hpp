@@ -77,7 +77,7 @@ class EmbreeScene {
   void add_boxes();
   void add_instance(const simulation::WorkcellBody& body, std::size_t index);
   RTCGeometry geometry(RTCGeometryType type);
-  [[nodiscard]] float* vertices(const Moving& moving) const;
+  static void rewrite(const Moving& moving, const std::vector<float>& vertices);
   void check(const char* what) const;
 
   Device device_;

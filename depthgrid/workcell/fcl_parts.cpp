@@ -23,9 +23,9 @@ namespace {
 
 using MeshModel = fcl::BVHModel<fcl::OBBRSSd>;
 
-Part part(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Pose& T_body_part, double radius_m) {
+Part part(const std::shared_ptr<fcl::CollisionGeometryd>& geometry, const Pose& T_body_part, double radius_m) {
   Part result;
-  result.object = std::make_unique<fcl::CollisionObjectd>(std::move(geometry));
+  result.object = std::make_unique<fcl::CollisionObjectd>(geometry);
   result.T_body_part = T_body_part;
   result.centre_body = T_body_part.translation();
   result.radius_m = radius_m;

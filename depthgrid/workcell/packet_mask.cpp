@@ -53,12 +53,13 @@ void PacketMask::add(const Shape& shape_camera) {
 
 /// A capsule across the image fills little of the rectangle around it.
 void PacketMask::add_in_pieces(const Capsule& capsule_camera) {
-  constexpr double kMostPieces = 8;
+  constexpr int kMostPieces = 8;
   const Eigen::Vector3d ab = capsule_camera.b_world - capsule_camera.a_world;
-  const double pieces = std::clamp(std::ceil(ab.norm() / capsule_camera.radius_m), 1.0, kMostPieces);
-  for (double i = 0; i < pieces; ++i) {
-    add(Capsule{capsule_camera.a_world + i / pieces * ab, capsule_camera.a_world + (i + 1) / pieces * ab,
-                capsule_camera.radius_m});
+  const double wanted = std::min<double>(kMostPieces, std::ceil(ab.norm() / capsule_camera.radius_m));
+  const int pieces = std::max(1, static_cast<int>(wanted));
+  const Eigen::Vector3d piece = ab / pieces;
+  for (int i = 0; i < pieces; ++i) {
+    add(Capsule{capsule_camera.a_world + i * piece, capsule_camera.a_world + (i + 1) * piece, capsule_camera.radius_m});
   }
 }
 
