@@ -132,6 +132,16 @@ int Projection::most_violated() const noexcept {
   return worst;
 }
 
+/// The normal at hand as a combination of the active ones: R r = d, from the last row up.
+Projection::Variables Projection::in_active_normals() const noexcept {
+  Variables r = d_.head(active_);
+  for (int j = active_ - 1; j >= 0; --j) {
+    r[j] /= triangle_(j, j);
+    r.head(j) -= r[j] * triangle_.col(j).head(j);
+  }
+  return r;
+}
+
 /// Moves to where this constraint holds too, releasing others on the way.
 ProjectionStatus Projection::satisfy(int constraint, int most_steps) noexcept {
   const int n = static_cast<int>(problem_.wanted.size());
@@ -140,8 +150,7 @@ ProjectionStatus Projection::satisfy(int constraint, int most_steps) noexcept {
   while (++steps_ <= most_steps) {
     d_.noalias() = basis_.transpose() * normal;
     const double length_squared = d_.tail(n - active_).squaredNorm();
-    Variables r = d_.head(active_);
-    triangle_.topLeftCorner(active_, active_).triangularView<Eigen::Upper>().solveInPlace(r);
+    const Variables r = in_active_normals();
     double dual_step = kInfinity;
     int leaving = -1;
     for (int j = equalities_; j < active_; ++j) {

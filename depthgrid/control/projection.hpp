@@ -67,6 +67,7 @@ class Projection {
   [[nodiscard]] int most_violated() const noexcept;
   [[nodiscard]] ProjectionStatus satisfy(int constraint, int most_steps) noexcept;
   [[nodiscard]] Variables normal_of(int constraint) const noexcept;
+  [[nodiscard]] Variables in_active_normals() const noexcept;
   [[nodiscard]] double slack_of(int constraint) const noexcept;
   void activate(int constraint) noexcept;
   void release(int place) noexcept;
