@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "depthgrid/core/pixel_frustum.hpp"
 #include "search/search_setup.hpp"
 
 namespace depthgrid::search {
@@ -365,6 +366,78 @@ TEST(Extremes, AnImageMayHaveAnySize) {
       }
     }
   }
+}
+
+/// Only what is measured counts.
+OneCamera measured_only(float wall_m, int width_px, int height_px, double focal_px) {
+  OneCamera one(wall_m, width_px, height_px);
+  one.setup.rig.cameras[0].intrinsics.fx_px = focal_px;
+  one.setup.rig.cameras[0].intrinsics.fy_px = focal_px;
+  one.setup.settings.policies.unobserved = Policy::ignored;
+  one.setup.settings.policies.outside = Policy::ignored;
+  one.setup.settings.rho_m = 1.0;
+  one.refer();
+  return one;
+}
+
+/// A wall straight ahead, along the cubes' faces: nothing but the error's growth with the range decides which cubes end
+/// before it.
+TEST(Extremes, ErrorsOfOrientationGrowWithinEveryCube) {
+  Random random(5);
+  for (int n = 0; n < 100; ++n) {
+    OneCamera one = measured_only(2.0F, 96, 72, 30);
+    one.refer();
+    one.setup.settings.resolution_m = 0.03;
+    const double rate = random.uniform(0.05, 0.3);
+    one.setup.settings.margins[0].rotation_rad = rate;
+    const Vector3d p(random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(1.0, 1.4));
+    // Straight ahead, the first point whose error reaches the wall.
+    double free_m = p.z();
+    double obstacle_m = 2;
+    while (obstacle_m - free_m > 1e-12) {
+      const double z_m = 0.5 * (free_m + obstacle_m);
+      (z_m + rate * Vector3d(p.x(), p.y(), z_m).norm() < 2 ? free_m : obstacle_m) = z_m;
+    }
+    const double answer_m = Asker(one.setup).distance(point(p)).nearest.distance_m;
+    EXPECT_LE(answer_m, obstacle_m - p.z()) << p.transpose() << " with " << rate << " rad";
+    EXPECT_GT(answer_m, 0) << p.transpose() << " with " << rate << " rad";
+  }
+}
+
+/// Things of one pixel, many of which lie within the resolution.
+TEST(Extremes, PixelsMayBeSmallerThanTheResolution) {
+  Random random(6);
+  constexpr int kWide = 320;
+  constexpr int kHigh = 240;
+  int told = 0;
+  for (int n = 0; n < 60; ++n) {
+    OneCamera one = measured_only(2.0F, kWide, kHigh, 500);
+    const PinholeCamera& pinhole = one.setup.rig.cameras[0].intrinsics;
+    one.setup.settings.resolution_m = random.uniform(0.005, 0.03);
+    std::vector<PixelFrustum> things;
+    for (int i = 0; i < 5; ++i) {
+      const int u = random.integer(0, kWide - 1);
+      const int v = random.integer(0, kHigh - 1);
+      float& depth_m = one.image_m[static_cast<std::size_t>(v * kWide + u)];
+      depth_m = static_cast<float>(random.uniform(0.6, 1.5));
+      things.push_back(pixel_frustum(pinhole, u, v, static_cast<double>(depth_m), 2));
+    }
+    one.refer();
+    Asker asker(one.setup);
+    for (int i = 0; i < 5; ++i) {
+      const Vector3d p = deproject(
+          pinhole, {random.uniform(40, kWide - 40), random.uniform(40, kHigh - 40), random.uniform(0.7, 1.7)});
+      double distance_m = 2 - p.z();
+      for (const PixelFrustum& thing : things) {
+        distance_m = std::min(distance_m, std::sqrt(squared_distance(thing, p)));
+      }
+      const double answer_m = asker.distance(point(p)).nearest.distance_m;
+      EXPECT_LE(answer_m, distance_m) << p.transpose();
+      EXPECT_GE(answer_m, distance_m - one.setup.settings.resolution_m - kRounding - kDoubleRounding) << p.transpose();
+      told += answer_m > 0 && distance_m < 2 - p.z() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(told, 100);
 }
 
 TEST(Extremes, AnImageWithoutMeasurementsFreesNothing) {

@@ -61,6 +61,9 @@ SearchSetup random_setup(const RandomProblem& problem, Random& random) {
   if (random.chance(0.5)) {
     setup.settings.policies.outside = Policy::ignored;
   }
+  for (RigCamera& camera : setup.rig.cameras) {
+    camera.rule.near_m = random.chance(0.3) ? random.uniform(0.2, 1.0) : camera.rule.near_m;
+  }
   return setup;
 }
 

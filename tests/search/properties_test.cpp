@@ -310,42 +310,99 @@ TEST(Properties, LargeErrorsOfOrientationAreCoveredEverywhere) {
   });
 }
 
+/// The same problem with a share of the robot's pixels without a measurement: islands that only the model explains.
+RandomProblem with_islands(const RandomProblem& given, Random& random) {
+  RandomProblem problem = reference::make_random_problem(given.options);
+  const double share = random.uniform(0, 1);
+  for (std::size_t k = 0; k < problem.views.size(); ++k) {
+    const simulation::View& view = problem.views[k];
+    for (std::size_t i = 0; i < view.depth_m.index(0, view.depth_m.height_px()); ++i) {
+      if (view.robot_near_m.data()[i] > 0 && random.chance(share)) {
+        problem.views[k].depth_m.data()[i] = 0;
+        if (!problem.units[k].empty()) {
+          problem.units[k][i] = 0;
+        }
+      }
+    }
+  }
+  return problem;
+}
+
+/// Before, in and behind where the cameras see the robot.
+std::vector<Vector3d> points_at_the_robot(const RandomProblem& problem, Random& random) {
+  std::vector<Vector3d> points_world;
+  for (std::size_t k = 0; k < problem.views.size(); ++k) {
+    const RigCamera& camera = problem.rig.cameras[k];
+    const DepthImage& near_m = problem.views[k].robot_near_m;
+    for (int attempt = 0; attempt < 200 && points_world.size() < 2 * (k + 1); ++attempt) {
+      const int u = random.integer(0, near_m.width_px() - 1);
+      const int v = random.integer(0, near_m.height_px() - 1);
+      if (near_m.at(u, v) > 0) {
+        const double z_m = static_cast<double>(near_m.at(u, v)) + random.uniform(-0.05, 0.2);
+        points_world.push_back(camera.T_world_camera * deproject(camera.intrinsics, {u + 0.5, v + 0.5, z_m}));
+      }
+    }
+  }
+  return points_world;
+}
+
+reference::RandomOptions with_robot() {
+  reference::RandomOptions options;
+  options.robot = true;
+  options.margins = false;
+  return options;
+}
+
 /// Pixels of the robot without a measurement, and obstacles before it, leave islands that are the robot and nothing
 /// else.
 TEST(Properties, RobotsBehindMissingMeasurementsAreNoMoreThanRobots) {
   Tally tally;
-  reference::RandomOptions options;
-  options.robot = true;
-  options.margins = false;
-  for_random_problems(100, options, [&](const RandomProblem& given, Random& random) {
-    RandomProblem problem = reference::make_random_problem(given.options);
-    const double share = random.uniform(0, 1);
-    for (std::size_t k = 0; k < problem.views.size(); ++k) {
-      const simulation::View& view = problem.views[k];
-      for (std::size_t i = 0; i < view.depth_m.index(0, view.depth_m.height_px()); ++i) {
-        if (view.robot_near_m.data()[i] > 0 && random.chance(share)) {
-          problem.views[k].depth_m.data()[i] = 0;
-          if (!problem.units[k].empty()) {
-            problem.units[k][i] = 0;
-          }
-        }
-      }
-    }
+  for_random_problems(100, with_robot(), [&](const RandomProblem& given, Random& random) {
+    const RandomProblem problem = with_islands(given, random);
     Question question{make_setup(problem, random_space(random)), {}};
-    for (std::size_t k = 0; k < problem.views.size(); ++k) {  // in and behind islands
-      const RigCamera& camera = problem.rig.cameras[k];
-      const DepthImage& near_m = problem.views[k].robot_near_m;
-      for (int attempt = 0; attempt < 200 && question.points_world.size() < 2 * (k + 1); ++attempt) {
-        const int u = random.integer(0, near_m.width_px() - 1);
-        const int v = random.integer(0, near_m.height_px() - 1);
-        if (near_m.at(u, v) > 0) {
-          const double z_m = static_cast<double>(near_m.at(u, v)) + random.uniform(-0.05, 0.2);
-          question.points_world.push_back(camera.T_world_camera *
-                                          deproject(camera.intrinsics, {u + 0.5, v + 0.5, z_m}));
+    question.points_world = points_at_the_robot(problem, random);
+    expect_as_the_oracle(question, tally);
+  });
+}
+
+/// Whatever a store took before: a robot in the images that has gone leaves nothing behind, and one that has come finds
+/// nothing left.
+TEST(Properties, OnlyTheNewestFramesCount) {
+  Tally tally;
+  for_random_problems(60, with_robot(), [&](const RandomProblem& given, Random& random) {
+    const RandomProblem problem = with_islands(given, random);
+    const std::vector<Vector3d> points_world = points_at_the_robot(problem, random);
+    const SearchSetup robot = make_setup(problem, random_space(random));
+    const SearchSetup none = [&] {
+      SearchSetup result = robot;
+      for (Frame& frame : result.frames) {
+        frame.robot = {};
+      }
+      return result;
+    }();
+    const auto take = [](ViewStore& store, const SearchSetup& setup, int times) {
+      for (int n = 0; n < times; ++n) {
+        for (std::size_t k = 0; k < setup.frames.size(); ++k) {
+          ASSERT_EQ(store.update(k, setup.frames[k]), UpdateResult::taken);
         }
       }
+    };
+    for (const auto& [before, now] : {std::pair{&robot, &none}, std::pair{&none, &robot}}) {
+      ViewStore store(now->rig, now->settings);
+      take(store, *before, 5);  // every buffer once
+      take(store, *now, 1);
+      Asker fresh(*now);
+      Search search;
+      for (const Vector3d& p_world : points_world) {
+        const Primitive primitive = point(p_world);
+        Answer answer;
+        search.distances(store.snapshot(), {&primitive, 1}, {&answer, 1});
+        const Proximity expected = fresh.distance(primitive).nearest;
+        EXPECT_EQ(answer.nearest.distance_m, expected.distance_m) << p_world.transpose();
+        EXPECT_EQ(answer.nearest.state, expected.state) << p_world.transpose();
+        tally.telling += expected.distance_m > 0 && expected.distance_m < now->settings.rho_m ? 1 : 0;
+      }
     }
-    expect_as_the_oracle(question, tally);
   });
 }
 
