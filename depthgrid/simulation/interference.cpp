@@ -98,11 +98,10 @@ void apply_interference(std::span<const StructuredLightUnit> units, std::size_t 
     const int reach = static_cast<int>(model.spot_radius_px);
     const int width = unit.camera.width_px;
     const int height = unit.camera.height_px;
+    std::uint64_t number = 0;  // of the pixel, with a border as wide as a spot reaches
     for (int v = -reach; v < height + reach; ++v) {
       for (int u = -reach; u < width + reach; ++u) {
-        const std::uint64_t row = static_cast<std::uint64_t>(v) + reach;
-        const std::uint64_t number = row * (static_cast<std::uint64_t>(width) + 2 * reach) + u + reach;
-        if (random.uniform(number) >= centre_share) {
+        if (random.uniform(number++) >= centre_share) {
           continue;
         }
         for (const auto& [x, y] : spot) {
