@@ -53,9 +53,9 @@ void read_units(MocapWords& words, MocapSkeleton& skeleton) {
 std::vector<int> read_turns(MocapWords& words, const std::string& bone) {
   std::vector<int> turns;
   while (words.on_same_line()) {
-    const std::string dof = words.take();
+    std::string dof = words.take();
     if (dof != "rx" && dof != "ry" && dof != "rz") {
-      words.refuse("bone '" + bone + "' moves in '" + dof + "', must be rx, ry or rz");
+      words.refuse("bone '" + bone + "' moves in '" + dof.append("', must be rx, ry or rz"));
     }
     turns.push_back(dof[1] - 'x');
   }
