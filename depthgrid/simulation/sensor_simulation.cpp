@@ -57,10 +57,16 @@ bool asks_slant(const SensorSimulation& s) {
 /// theta / (pi/2 - theta), which grows without limit towards grazing views.
 double steepness(double slant_rad) { return slant_rad / std::max(1e-3, kPi / 2 - slant_rad); }
 
+/// 0 for a reading that the sensor does not give.
+float in_range(const SensorSimulation& s, double reading_m) {
+  return reading_m > 0 && reading_m >= s.near_m && reading_m <= s.far_m ? static_cast<float>(reading_m) : 0.0F;
+}
+
 /// Of a number of at most a million.
 int nearest_integer(double x) {
-  constexpr double kShift = 1 << 20;  // so that cutting off is rounding down
-  return static_cast<int>(x + kShift + 0.5) - static_cast<int>(kShift);
+  constexpr int kShift = 1 << 20;  // so that cutting off is rounding down
+  constexpr double kShiftAndHalf = kShift + 0.5;
+  return static_cast<int>(x + kShiftAndHalf) - kShift;
 }
 
 /// Between -1 and 1 in every pixel, with half a wave to a whole one across the image, another for each seed.
@@ -122,6 +128,24 @@ double SimulatedSensor::reading_m(double ideal_m, std::size_t source, std::uint6
   return z;
 }
 
+void SimulatedSensor::look_at(const DepthImage& ideal_m) {
+  std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
+  if (sensor_.baseline_m > 0) {
+    mark_hidden_from_second_view(camera_, ideal_m, sensor_.baseline_m, hidden_);
+  }
+  if (asks_slant(sensor_)) {
+    surface_slants(camera_, ideal_m, slant_rad_);
+  }
+  if (sensor_.flying_share > 0) {
+    edges_.update(ideal_m);
+  }
+}
+
+int SimulatedSensor::beside(int at, double sigma_px, float normal, double shake_px, int size_px) const noexcept {
+  const double offset_px = std::clamp(sigma_px * normal, -sensor_.lateral_limit_px, sensor_.lateral_limit_px);
+  return std::clamp(nearest_integer(at + offset_px + shake_px), 0, size_px - 1);
+}
+
 void SimulatedSensor::measure(const DepthImage& ideal_m, std::uint64_t frame, DepthImage& measured_m) {
   if (ideal_m.width_px() != camera_.width_px || ideal_m.height_px() != camera_.height_px) {
     fail("ideal image is ", ideal_m.width_px(), " x ", ideal_m.height_px(), " px, must be the camera's ",
@@ -130,17 +154,8 @@ void SimulatedSensor::measure(const DepthImage& ideal_m, std::uint64_t frame, De
   if (measured_m.width_px() != camera_.width_px || measured_m.height_px() != camera_.height_px) {
     measured_m = DepthImage(camera_.width_px, camera_.height_px);
   }
+  look_at(ideal_m);
   const SensorSimulation& s = sensor_;
-  std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
-  if (s.baseline_m > 0) {
-    mark_hidden_from_second_view(camera_, ideal_m, s.baseline_m, hidden_);
-  }
-  if (asks_slant(s)) {
-    surface_slants(camera_, ideal_m, slant_rad_);
-  }
-  if (s.flying_share > 0) {
-    edges_.update(ideal_m);
-  }
   const PixelRandom lateral(seed_, frame, kLateral);
   const PixelRandom axial(seed_, frame, kAxial);
   const PixelRandom dropout(seed_, frame, kDropout);
@@ -155,22 +170,15 @@ void SimulatedSensor::measure(const DepthImage& ideal_m, std::uint64_t frame, De
       std::size_t source = pixel;  // the ideal pixel that this one shows
       if (displaced) {
         const std::uint64_t aside = lateral.bits(patch);
-        const double sigma_px =
-            s.lateral_px + s.lateral_slant_px * steepness(std::min<double>(slant_rad_[pixel], s.largest_slant_rad));
-        const auto beside = [&s, sigma_px, aside](int at, unsigned n, double shake_px, int size) {
-          const double offset_px = std::clamp(sigma_px * normal_of(aside, n), -s.lateral_limit_px, s.lateral_limit_px);
-          return std::clamp(nearest_integer(at + offset_px + shake_px), 0, size - 1);
-        };
-        source = ideal_m.index(beside(u, 0, shake_u, camera_.width_px), beside(v, 1, shake_v, camera_.height_px));
+        const double slant_rad = std::min<double>(slant_rad_[pixel], s.largest_slant_rad);
+        const double sigma_px = s.lateral_px + s.lateral_slant_px * steepness(slant_rad);
+        source = ideal_m.index(beside(u, sigma_px, normal_of(aside, 0), shake_u, camera_.width_px),
+                               beside(v, sigma_px, normal_of(aside, 1), shake_v, camera_.height_px));
       }
-      float& measured = measured_m.data()[pixel];
-      measured = 0;
-      if (!(ideal_m.data()[source] > 0) || hidden_[source] != 0 || slant_rad_[source] > s.largest_slant_rad ||
-          (s.dropout_share > 0 && dropout.uniform(pixel) < s.dropout_share)) {
-        continue;
-      }
-      const double z = reading_m(ideal_m.data()[source], source, axial.bits(patch));
-      measured = z > 0 && z >= s.near_m && z <= s.far_m ? static_cast<float>(z) : 0.0F;
+      const bool lost = s.dropout_share > 0 && dropout.uniform(pixel) < s.dropout_share;
+      const bool seen = ideal_m.data()[source] > 0 && hidden_[source] == 0 && slant_rad_[source] <= s.largest_slant_rad;
+      measured_m.data()[pixel] =
+          seen && !lost ? in_range(s, reading_m(ideal_m.data()[source], source, axial.bits(patch))) : 0.0F;
     }
   }
 }

@@ -76,6 +76,10 @@ class SimulatedSensor {
   [[nodiscard]] std::uint64_t seed() const noexcept { return seed_; }
 
  private:
+  /// What is asked of a whole ideal image before its pixels.
+  void look_at(const DepthImage& ideal_m);
+  /// Column or row of the ideal pixel that one shows.
+  [[nodiscard]] int beside(int at, double sigma_px, float normal, double shake_px, int size_px) const noexcept;
   [[nodiscard]] double reading_m(double ideal_m, std::size_t source, std::uint64_t dice) const noexcept;
 
   SensorSimulation sensor_;
