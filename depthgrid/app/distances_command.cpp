@@ -98,6 +98,12 @@ bool covers_other_times(const DistancesOptions& options, const std::vector<Camer
           std::all_of(margins.begin(), margins.end(), [](const auto& m) { return m.time_uncertainty_s > 0; }));
 }
 
+/// Whether anything says how long the camera takes for an image: the command line, a sensor model, or the rig file.
+bool states_exposure(const SensorOptions& options, const RigCamera& camera) {
+  return options.half_exposure_s || options.sensor || !camera.sensor.empty() ||
+         (camera.margins && camera.margins->half_exposure_s > 0);
+}
+
 /// What the rig file says and what the user says must fit together.
 void check(const input::Recording& recording, const DistancesOptions& options,
            const std::vector<CameraMargins>& margins) {
@@ -105,6 +111,12 @@ void check(const input::Recording& recording, const DistancesOptions& options,
   if (std::any_of(cameras.begin(), cameras.end(),
                   [](const auto& c) { return c.rule.clamp_beyond_far && !std::isfinite(c.rule.far_m); })) {
     fail_usage("--beyond-far clamp needs a farthest measurable depth: give --far");
+  }
+  for (const RigCamera& camera : cameras) {
+    if (options.search.v_max_m_s.value_or(0) > 0 && !states_exposure(options.sensor, camera)) {
+      fail_usage("camera '", camera.id, "': obstacles move (--v-max ", *options.search.v_max_m_s,
+                 ") and nothing says for how long an image is exposed; give --half-exposure S or --sensor NAME");
+    }
   }
   // Space that one camera saw free may be occupied when another one looks.
   if (!recording.simultaneous() && cameras.size() > 1 && !options.static_scene &&

@@ -96,6 +96,12 @@ INSTANTIATE_TEST_SUITE_P(
              2,
              "camera 'left' has no margins in the rig file; give --sensor NAME (ideal: no noise) or --margin-constant, "
              "--margin-linear, --margin-quadratic"},
+        Case{"NoExposureThoughObstaclesMove",
+             {},
+             kGood + kPoint + "--method search --margin-constant 0.004 --margin-quadratic 0.006 --v-max 2",
+             2,
+             "camera 'left': obstacles move (--v-max 2) and nothing says for how long an image is exposed; give "
+             "--half-exposure S or --sensor NAME"},
         Case{"NothingDeclared",
              {},
              kGood + kPoint + "--method search --sensor ideal",

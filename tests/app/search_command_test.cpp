@@ -210,6 +210,32 @@ TEST(Margins, OfASensorReplaceTheNoiseAndKeepTheCalibration) {
   EXPECT_NEAR(distance_m(folder, "search", "--sensor kinect-v1"), 0.3 - kinect_m - 0.03, 0.0051);
 }
 
+/// Margins alone, as info suggests them, say nothing about the exposure; what does is enough, 0 included.
+TEST(Margins, OfWhatMovesNeedTheExposure) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const std::string question =
+      "distances . --frames 5 --method search --unobserved obstacle --outside ignored --robot-pockets obstacle "
+      "--v-max 2 --margin-constant 0.05 " +
+      kSpace + kPoint;
+  EXPECT_EQ(run_command(question, folder).exit_code, 2);
+  EXPECT_EQ(run_command(question + "--time-uncertainty 0.01 --margin-time 0.01", folder).exit_code, 2);
+  EXPECT_NEAR(rows_of(run_command(question + "--half-exposure 0", folder)).at(0).number("distance_m"), 0.25, 0.0051);
+  EXPECT_NEAR(rows_of(run_command(question + "--half-exposure 0.02", folder)).at(0).number("distance_m"), 0.21, 0.0051);
+  EXPECT_EQ(run_command(question + "--sensor ideal", folder).exit_code, 0);
+
+  auto file = wall_rig();
+  for (RigCamera& camera : file.rig.cameras) {
+    camera.margins = CameraMargins{{0.05, 0, 0, 1}, 0, 0, 0.02, 0};
+  }
+  input::save_rig(file, folder / "rig.json");
+  EXPECT_NEAR(rows_of(run_command(question, folder)).at(0).number("distance_m"), 0.21, 0.0051);
+  file.rig.cameras[1].margins->half_exposure_s = 0;
+  input::save_rig(file, folder / "rig.json");
+  EXPECT_EQ(run_command(question, folder).exit_code, 2);
+  EXPECT_EQ(run_command(question + "--cameras left", folder).exit_code, 0);
+}
+
 TEST(Margins, InfoShowsThoseOfTheRigFile) {
   const TemporaryFolder folder;
   write_wall(folder);
