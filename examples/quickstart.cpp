@@ -1,6 +1,8 @@
 // Quick start: depth images from your own driver in, distances of robot links out. No file, no allocation in the loop.
 //
-//   c++ -std=c++20 quickstart.cpp $(the flags of depthgrid::search)     or see examples/consumer for CMake
+//   c++ -std=c++20 -O2 quickstart.cpp $(pkg-config --cflags eigen3) -ldepthgrid_search -ldepthgrid_core -lhwy
+//
+// or examples/consumer for CMake; docs/search.md says more about both.
 //
 // Ownership  depth_view() and Frame never copy and never own: your buffer must outlive the call of update() and must
 //            not change during it. update() takes what it needs, so that afterwards the buffer is yours again.

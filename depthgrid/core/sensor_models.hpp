@@ -48,7 +48,8 @@ struct SensorModel {
 
 /// The errors of one camera of this model. `camera` as calibrated for its depth images, not for images that were
 /// registered to another camera; `metres_per_unit` of its 16-bit images. What the model does not know, and everything
-/// that is a matter of calibration, is 0.
+/// that is a matter of calibration, is 0. The range is not among them: readings beyond it are believed unless
+/// RigCamera::rule is set to model.rule.
 [[nodiscard]] CameraMargins sensor_margins(const SensorModel& model, const PinholeCamera& camera,
                                            double metres_per_unit) noexcept;
 
