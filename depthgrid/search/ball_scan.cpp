@@ -141,7 +141,7 @@ struct Asked {
 
 bool scan_pixels(const LocalCamera& camera, const ScannedBall& ball, const Window& window, Asked asked) {
   const Floats d;
-  // Columns beyond the window are missed by the ball, so whole vectors do no harm; but they have to lie in the image.
+  // Columns beyond the window make whole vectors. They have to lie in the image, and may be asked about twice.
   const int count = whole_vectors(window.u1 - window.u0 + 1);
   const int first = std::min(window.u0, camera.width_px - count);
   const int rows = window.v1 - window.v0 + 1;

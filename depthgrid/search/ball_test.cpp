@@ -153,9 +153,11 @@ bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Ve
   }
   const Ball ball{camera, clip, p_camera, radius_m, radius_m * radius_m};
   if (p_camera.z() - radius_m > camera.near_m && p_camera.z() > radius_m && can_scan(camera, window)) {
-    // Guarded twice: the position's rounding, and that of distances from it.
+    // Guarded for the position's rounding, for that of distances from it, and for that of the pixels' borders.
     const Eigen::Vector3f p = p_camera.cast<float>();
-    const ScannedBall scanned{p.x(), p.y(), p.z(), static_cast<float>(radius_m) + 2 * camera.guard_m, window};
+    const float radius = static_cast<float>(radius_m) + 2 * camera.guard_m;
+    const float border_m = camera.guard_px * (p.z() + radius) / std::min(camera.fx, camera.fy);
+    const ScannedBall scanned{p.x(), p.y(), p.z(), radius + border_m, window};
     return scan(
         camera, scanned,
         [](const void* context, int u, int v) { return static_cast<const Ball*>(context)->meets_pixel(u, v); }, &ball);

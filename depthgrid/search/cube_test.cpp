@@ -274,9 +274,10 @@ HWY_INLINE M outside_view(const CubeQuery& query, const LocalCamera& camera, con
   };
   const M in_depth = hn::Or(hn::Gt(b.z_low, hn::Set(d, query.d_max_m)), hn::Lt(b.z_high, hn::Set(d, query.d_min_m)));
   const M behind = hn::Lt(b.z_high, zero);
-  return hn::Or(hn::Or(in_depth, behind),
-                hn::Or(beyond(b.x_low, b.x_high, -camera.cx / camera.fx, (camera.width - camera.cx) / camera.fx),
-                       beyond(b.y_low, b.y_high, -camera.cy / camera.fy, (camera.height - camera.cy) / camera.fy)));
+  return hn::Or(hn::Or(in_depth, behind), hn::Or(beyond(b.x_low, b.x_high, (-camera.cx - camera.guard_px) / camera.fx,
+                                                        (camera.width - camera.cx + camera.guard_px) / camera.fx),
+                                                 beyond(b.y_low, b.y_high, (-camera.cy - camera.guard_px) / camera.fy,
+                                                        (camera.height - camera.cy + camera.guard_px) / camera.fy)));
 }
 
 HWY_INLINE V length(V x, V y, V z) { return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))); }
@@ -402,7 +403,8 @@ struct Family {
       const float z = r[6] * c.x + r[7] * c.y + r[8] * c.z + camera.offset_m[2];
       float grown = 2 * camera.guard_m;
       if (camera.has_reach) {
-        const float range = std::sqrt(x * x + y * y + z * z) + 4 * half_m;
+        // A child that W cuts has its centre up to 3.5 half sides from the parent's.
+        const float range = std::sqrt(x * x + y * y + z * z) + 6 * half_m;
         grown += (camera.reach_m + camera.reach_per_m * range) * 1.0001F;
       }
       const float spread_x = (a[0] + a[1] + a[2]) * half_m;
@@ -427,23 +429,22 @@ struct Family {
         const float around_v = fy * (2 * spread_y + grown + std::abs(y) / z * parent_z) * 1.0001F + 4 * camera.guard_px;
         const float u = camera.fx * x / z + camera.cx;
         const float v = camera.fy * y / z + camera.cy;
-        result.islands =
-            may_have_islands(camera, std::max(u - around_u, 0.0F), std::min(u + around_u, camera.width - 1),
-                             std::max(v - around_v, 0.0F), std::min(v + around_v, camera.height - 1));
+        result.islands = may_have_islands(camera, u - around_u, u + around_u, v - around_v, v + around_v);
       }
     }
     return result;
   }
 
-  /// Rectangles in continuous coordinates of the image, perhaps empty.
+  /// Of a rectangle in continuous coordinates.
   [[nodiscard]] static bool may_have_islands(const LocalCamera& camera, float u_low, float u_high, float v_low,
                                              float v_high) {
-    if (!(u_low <= u_high && v_low <= v_high)) {
+    if (!(u_low < camera.width && u_high >= 0 && v_low < camera.height && v_high >= 0)) {
       return false;
     }
-    const PixelRange columns{static_cast<int>(u_low), static_cast<int>(u_high) + 1};
-    const int last = static_cast<int>(v_high) / View::kBandRows;
-    for (int band = static_cast<int>(v_low) / View::kBandRows; band <= last; ++band) {
+    const auto pixel = [](float at, float size) { return static_cast<int>(std::clamp(at, 0.0F, size - 1)); };
+    const PixelRange columns{pixel(u_low, camera.width), pixel(u_high, camera.width) + 1};
+    const int last = pixel(v_high, camera.height) / View::kBandRows;
+    for (int band = pixel(v_low, camera.height) / View::kBandRows; band <= last; ++band) {
       if (!common(columns, camera.island_bands[band]).empty()) {
         return true;
       }

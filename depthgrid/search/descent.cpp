@@ -18,6 +18,8 @@ constexpr double kFineness = 1.0 / 6;
 constexpr int kClockInterval = 64;
 /// Primitives this near to each other share an origin, metres. Single precision resolves a micrometre there.
 constexpr double kSharedExtent = 4.0;
+/// Of the cameras' reach with range, as far as leaves follow it.
+constexpr double kLargestRate = 3.2;
 
 float rounded_down(double value) noexcept { return std::nextafter(static_cast<float>(value), -1e30F); }
 float rounded_up(double value) noexcept { return std::nextafter(static_cast<float>(value), 1e30F); }
@@ -31,13 +33,20 @@ bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camer
 /// reach of x. The double-precision form of what the cube test hints at.
 bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
   const Eigen::Vector3d x = camera.to_camera(x_local);
-  if (!(x.z() > camera.near_m) || !projects_inside(camera.pinhole, x)) {
+  if (!(x.z() > 0) || !projects_inside(camera.pinhole, x)) {
     return true;
   }
   const PinholeCamera& c = camera.pinhole;
   const DepthPoint at = project(c, x);
   const auto u = static_cast<int>(at.x_px);
   const auto v = static_cast<int>(at.y_px);
+  const auto is_robot = [&](int i, int j, double z_m) {
+    return camera.has_islands && z_m >= static_cast<double>(camera.view->island_near_m().at(i, j)) &&
+           z_m <= static_cast<double>(camera.view->island_far_m().at(i, j));
+  };
+  if (!(x.z() > camera.near_m)) {
+    return !is_robot(u, v, x.z());
+  }
   const double part_u = at.x_px - u;
   const double part_v = at.y_px - v;
   const double slack = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
@@ -58,15 +67,26 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
       return false;
     }
     // What is not free begins at free_m, or where x lies beyond that; in the robot's island it is the robot.
-    const double y_m = std::max(free_m, x.z());
-    return !camera.has_islands || !(y_m >= static_cast<double>(camera.view->island_near_m().at(i, j)) &&
-                                    y_m <= static_cast<double>(camera.view->island_far_m().at(i, j)));
+    return !is_robot(i, j, std::max(free_m, x.z()));
   };
   return reaches(u, v, 0) || reaches(part_u < 0.5 ? u - 1 : u + 1, v, std::min(part_u, 1 - part_u) * x.z() / c.fx_px) ||
          reaches(u, part_v < 0.5 ? v - 1 : v + 1, std::min(part_v, 1 - part_v) * x.z() / c.fy_px);
 }
 
 }  // namespace
+
+void Allowance::end_at(std::chrono::steady_clock::time_point deadline) noexcept {
+  deadline_ = deadline;
+  timed_ = true;
+}
+
+bool Allowance::is_spent() noexcept {
+  if (timed_ && !late_ && --until_clock_ <= 0) {
+    until_clock_ = kClockInterval;
+    late_ = std::chrono::steady_clock::now() >= deadline_;
+  }
+  return late_ || nodes_ <= 0;
+}
 
 Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
     : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
@@ -85,7 +105,8 @@ Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier,
   }
   // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and reach of
   // each of its points. e_k varies by less than rate * diagonal within a cube.
-  const double leaf_diagonal_m = (settings_.resolution_m - 2e-5) / (1 + largest_rate_);
+  // With a rate of half a turn and more a camera frees nothing anyway: no reason for ever smaller leaves.
+  const double leaf_diagonal_m = (settings_.resolution_m - 2e-5) / (1 + std::min(largest_rate_, kLargestRate));
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
 }
 
@@ -107,10 +128,12 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
   // third or two thirds of every cube that holds it: never near the faces, where eight cubes of each level would meet.
   double root_half_m = leaf_half_m_;
   leaf_level_ = 0;
-  while (2 * root_half_m < 3 * extent_m && leaf_level_ + 12 < static_cast<int>(kLevels)) {
+  while (2 * root_half_m < 3 * extent_m) {
     root_half_m *= 2;
     ++leaf_level_;
   }
+  // The root has to hold everything of interest; leaves may be coarser.
+  leaf_level_ = std::min(leaf_level_, static_cast<int>(kLevels) - 12);
   const Eigen::Vector3d root = middle_world - origin_world_ + Eigen::Vector3d::Constant(root_half_m / 3);
   root_ = {static_cast<float>(root.x()), static_cast<float>(root.y()), static_cast<float>(root.z()), 0.0F, 0, 0};
   double half_m = root_half_m;
@@ -252,7 +275,8 @@ std::size_t Descent::add(const Primitive& primitive, double limit_m) noexcept {
 
 /// Cubes have to be nearer than this, a little more because of single precision.
 void Descent::set_bound(std::size_t i, double bound_m) noexcept {
-  query_.axes[i].bound_m = bound_m > 0 ? rounded_up(bound_m + 1e-6) : 0.0F;
+  constexpr double kRoundings = 8 * 0x1p-24;
+  query_.axes[i].bound_m = bound_m > 0 ? rounded_up(bound_m + 1e-6 + kRoundings * extent_m_) : 0.0F;
 }
 
 bool Descent::is_of_interest(const Cube& cube) const noexcept {
@@ -338,22 +362,16 @@ void Descent::find(Allowance& allowance) noexcept {
   std::array<Cube, 2> pair{};
   Cube& cube = pair[0];
   Children children;
-  int until_clock = kClockInterval;
   while (frontier_.pop(cube)) {
     if (!is_of_interest(cube)) {
       continue;
     }
-    bool late = allowance.nodes <= 0;
-    if (allowance.timed && --until_clock <= 0) {
-      until_clock = kClockInterval;
-      late = late || std::chrono::steady_clock::now() >= allowance.deadline;
-    }
-    if (late) {
+    if (allowance.is_spent()) {
       stop(all_primitives(), std::max(0.0, static_cast<double>(frontier_.lower_bound_m()) - 1e-6));
       return;
     }
-    const int count = allowance.nodes > 1 && frontier_.pop_like(cube.level, pair[1]) ? 2 : 1;
-    allowance.nodes -= count;
+    const int count = allowance.nodes() > 1 && frontier_.pop_like(cube.level, pair[1]) ? 2 : 1;
+    allowance.take(count);
     count_.nodes += count;
     split(query_, pair.data(), count, half_side_m(cube.level + 1), children);
     take(children);
@@ -404,8 +422,8 @@ void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector
   }
   Cube cube{};
   Children children;
-  while (frontier_.pop(cube) && allowance.nodes > 0) {
-    --allowance.nodes;
+  while (frontier_.pop(cube) && !allowance.is_spent()) {
+    allowance.take(1);
     ++count_.nodes;
     split(query_, &cube, 1, half_side_m(cube.level + 1), children);
     for (int n = 0; n < children.count; ++n) {

@@ -15,10 +15,22 @@
 namespace depthgrid::search {
 
 /// What is left of a call's budget.
-struct Allowance {
-  std::int64_t nodes = 0;
-  std::chrono::steady_clock::time_point deadline;
-  bool timed = false;
+class Allowance {
+ public:
+  /// Cubes that may still be opened, of those given last.
+  [[nodiscard]] std::int64_t nodes() const noexcept { return nodes_; }
+  void give(std::int64_t nodes) noexcept { nodes_ = nodes; }
+  void take(std::int64_t nodes) noexcept { nodes_ -= nodes; }
+  void end_at(std::chrono::steady_clock::time_point deadline) noexcept;
+  /// Looks at the clock at its first call and once in so many.
+  [[nodiscard]] bool is_spent() noexcept;
+
+ private:
+  std::int64_t nodes_ = 0;
+  std::chrono::steady_clock::time_point deadline_;
+  bool timed_ = false;
+  bool late_ = false;
+  int until_clock_ = 0;
 };
 
 /// One primitive's search. Positions relative to the descent's origin, metres.

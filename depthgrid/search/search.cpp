@@ -160,11 +160,10 @@ void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> pr
   Descent descent(snapshot, query, frontier, count != nullptr ? *count : own);
   std::int64_t nodes_left = budget.nodes > 0 ? budget.nodes : std::numeric_limits<std::int64_t>::max();
   Allowance allowance;
-  allowance.timed = budget.time_s > 0;
-  if (allowance.timed) {
-    allowance.deadline =
-        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                               std::chrono::duration<double>(std::min(budget.time_s, 1e6)));
+  if (budget.time_s > 0) {
+    allowance.end_at(std::chrono::steady_clock::now() +
+                     std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                         std::chrono::duration<double>(std::min(budget.time_s, 1e6))));
   }
   const std::size_t both = std::min(primitives.size(), answers.size());
   std::size_t next = 0;
@@ -192,10 +191,10 @@ void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> pr
     }
     // What the groups before have left is shared evenly by the rest.
     const auto share = nodes_left / static_cast<std::int64_t>(both - first) * static_cast<std::int64_t>(next - first);
-    allowance.nodes = next == both ? nodes_left : share;
-    const std::int64_t given = allowance.nodes;
+    const std::int64_t given = next == both ? nodes_left : share;
+    allowance.give(given);
     group(snapshot, {plans.data(), size}, answers, descent, allowance, with_direction);
-    nodes_left -= given - allowance.nodes;
+    nodes_left -= given - allowance.nodes();
   }
   for (std::size_t i = both; i < answers.size(); ++i) {
     answers[i] = Answer{};

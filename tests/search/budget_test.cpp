@@ -95,5 +95,23 @@ TEST(Budget, OfTimeGivesALowerBound) {
   EXPECT_GT(stopped, 0) << "a picosecond was always enough";
 }
 
+TEST(Budget, OfTimeThatIsOverOpensNothingHoweverManyPrimitivesThereAre) {
+  for_random_problems(20, {}, [](const RandomProblem& problem, Random&) {
+    Asker asker(make_setup(problem, SpaceKind::box, true));
+    std::vector<Primitive> primitives;
+    for (int copy = 0; copy < 20; ++copy) {
+      for (const Vector3d& p_world : problem.points_world) {
+        primitives.push_back(point(p_world));
+      }
+    }
+    std::vector<Answer> answers(primitives.size());
+    Count count;
+    asker.search().distances(asker.snapshot(), primitives, answers, Budget{0, 1e-9}, &count);
+    EXPECT_EQ(count.nodes, 0);
+    asker.search().hybrid(asker.snapshot(), primitives, answers, Budget{0, 1e-9}, &count);
+    EXPECT_EQ(count.nodes, 0);
+  });
+}
+
 }  // namespace
 }  // namespace depthgrid::search

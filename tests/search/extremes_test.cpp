@@ -124,6 +124,19 @@ TEST(Cameras, FreeNothingNearerThanTheirBlindZoneEnds) {
   }
 }
 
+TEST(Cameras, DoNotTakeTheRobotInTheirBlindZoneForAnObstacle) {
+  // Nothing is measured; a link fills the depths around the end of the blind zone (0.3 m).
+  OneCamera one(0.0F);
+  const std::vector<float> near_m(one.image_m.size(), 0.1F);
+  const std::vector<float> far_m(one.image_m.size(), 0.4F);
+  one.setup.frames[0].robot = {near_m.data(), far_m.data()};
+  for (const double z_m : {0.12, 0.2, 0.29, 0.31, 0.38}) {
+    SCOPED_TRACE(z_m);
+    expect_within_oracle(one.setup, {0, 0, z_m});
+  }
+  EXPECT_GT(Asker(one.setup).distance(point({0, 0, 0.2})).nearest.distance_m, 0.08);
+}
+
 TEST(Cameras, CanBeSeenFreeByAnother) {
   OneCamera one(4.0F);
   RigCamera other = one.setup.rig.cameras[0];
@@ -405,6 +418,22 @@ TEST(Extremes, ErrorsOfOrientationGrowWithinEveryCube) {
 }
 
 /// Things of one pixel, many of which lie within the resolution.
+TEST(Extremes, AnyErrorOfOrientationFreesNothingButHidesNothing) {
+  // Two cameras at the same place: one knows its orientation, the other does not.
+  OneCamera two;
+  SearchSetup& setup = two.setup;
+  setup.rig.cameras.push_back(setup.rig.cameras[0]);
+  setup.rig.cameras[1].id = "lost";
+  setup.frames.push_back(setup.frames[0]);
+  setup.settings.margins.push_back(setup.settings.margins[0]);
+  for (const double rotation_rad : {0.01, 3.0, 1e6, 1e12, 1e14, 1e16, 1e100}) {
+    setup.settings.margins[1].rotation_rad = rotation_rad;
+    const double answer_m = Asker(setup).distance(point({0, 0, 1.8})).nearest.distance_m;
+    EXPECT_LE(answer_m, 0.2) << rotation_rad;
+    EXPECT_GE(answer_m, 0.2 - 2 * setup.settings.resolution_m) << rotation_rad;
+  }
+}
+
 TEST(Extremes, PixelsMayBeSmallerThanTheResolution) {
   Random random(6);
   constexpr int kWide = 320;
