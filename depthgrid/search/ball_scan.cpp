@@ -145,8 +145,8 @@ bool scan_pixels(const LocalCamera& camera, const ScannedBall& ball, const Windo
   const int count = whole_vectors(window.u1 - window.u0 + 1);
   const int first = std::min(window.u0, camera.width_px - count);
   const int rows = window.v1 - window.v0 + 1;
-  Sides across;
-  Sides down;
+  Sides across;  // NOLINT(*-member-init): written before it is read
+  Sides down;    // NOLINT(*-member-init): written before it is read
   measure(ball.x_m, ball.z_m, ball.radius_m, camera.fx, camera.cx, first, 1, count, across);
   measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, window.v0, 1, rows, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
@@ -180,8 +180,8 @@ bool scan_blocks(const LocalCamera& camera, const ScannedBall& ball, int level, 
   const int j1 = window.v1 >> level;
   const int last = window.u1 >> level;
   const int count = whole_vectors(last - i0 + 1);
-  Sides across;
-  Sides down;
+  Sides across;  // NOLINT(*-member-init): written before it is read
+  Sides down;    // NOLINT(*-member-init): written before it is read
   measure(ball.x_m, ball.z_m, ball.radius_m, camera.fx, camera.cx, i0, 1 << level, count, across);
   measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, j0, 1 << level, j1 - j0 + 1, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
