@@ -38,6 +38,7 @@ class Variable {
 TEST(RandomRun, HasDefaults) {
   const Variable seed("DEPTHGRID_TEST_SEED", nullptr);
   const Variable count("DEPTHGRID_TEST_COUNT", nullptr);
+  const Variable divisor("DEPTHGRID_TEST_DIVISOR", nullptr);
   EXPECT_EQ(random_run(77).seed, 1U);
   EXPECT_EQ(random_run(77).count, 77);
 }
