@@ -34,16 +34,28 @@ Pose eigen(const KDL::Frame& frame) {
 
 bool moves(const JointDescription& joint) { return joint.type != JointType::fixed; }
 
-/// KDL's segment of a link: the joint stands at the joint's frame, the tip of the segment is the link's frame.
-KDL::Segment segment_of(const std::string& link, const JointDescription& joint) {
-  const KDL::Frame T_parent_joint = kdl(joint.T_parent_joint);
-  if (!moves(joint)) {
-    return KDL::Segment(link, KDL::Joint(joint.name, KDL::Joint::None), T_parent_joint);
+/// A link's joint in two steps: a fixed frame whose z axis is the joint's, and KDL's segment from there to the link.
+/// KDL keeps the last angle of joints about other axes in the joint itself, which threads would then share.
+struct JointSegment {
+  KDL::Frame T_parent_axis;
+  KDL::Segment T_axis_link;  ///< at a joint position
+
+  KDL::Frame pose(double position) const { return T_parent_axis * T_axis_link.pose(position); }
+  /// Of the link's origin, in the parent's frame.
+  KDL::Twist twist(double position, double speed) const {
+    return T_parent_axis.M * T_axis_link.twist(position, speed);
   }
-  const auto type = joint.type == JointType::prismatic ? KDL::Joint::TransAxis : KDL::Joint::RotAxis;
-  return KDL::Segment(link,
-                      KDL::Joint(joint.name, T_parent_joint.p, T_parent_joint.M * kdl(joint.axis.normalized()), type),
-                      T_parent_joint);
+};
+
+JointSegment segment_of(const std::string& link, const JointDescription& joint) {
+  if (!moves(joint)) {
+    return {kdl(joint.T_parent_joint), KDL::Segment(link, KDL::Joint(joint.name, KDL::Joint::None))};
+  }
+  Pose T_joint_axis = Pose::Identity();
+  T_joint_axis.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+  const auto type = joint.type == JointType::prismatic ? KDL::Joint::TransZ : KDL::Joint::RotZ;
+  return {kdl(joint.T_parent_joint * T_joint_axis),
+          KDL::Segment(link, KDL::Joint(joint.name, type), kdl(T_joint_axis.inverse()))};
 }
 
 void check(const JointDescription& joint, const std::string& source) {
@@ -90,7 +102,7 @@ struct RobotModel::Parts {
   std::vector<LinkDescription> links;
   std::vector<Joint> joints;
   std::vector<LinkJoint> carriers;     ///< of each link
-  std::vector<KDL::Segment> segments;  ///< of each link; the root's is a fixed one
+  std::vector<JointSegment> segments;  ///< of each link; the root's is a fixed one
 
   explicit Parts(RobotDescription&& robot);
 
@@ -102,7 +114,7 @@ struct RobotModel::Parts {
 
 void RobotModel::Parts::add_root(const std::string& link) {
   carriers.emplace_back();
-  segments.emplace_back(link);
+  segments.push_back({KDL::Frame::Identity(), KDL::Segment(link)});
 }
 
 void RobotModel::Parts::add_link(const std::string& link, std::size_t parent, const JointDescription& joint) {

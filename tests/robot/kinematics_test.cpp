@@ -3,6 +3,7 @@
 
 #include <array>
 #include <sstream>
+#include <thread>
 
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "depthgrid/robot/urdf.hpp"
@@ -199,6 +200,27 @@ TEST(Kinematics, ArmsOfTheDataFolderStandWhereTheyAreKnownTo) {
                opened[panda.link_index("panda_rightfinger")].translation())
                   .norm(),
               0.06, 1e-12);
+}
+
+// One model for the threads of several cameras: each gets the poses of its own joint positions.
+TEST(Kinematics, ManyThreadsAskOneModel) {
+  const RobotModel model = kuka_lwr4();
+  const test::RandomRun run = test::random_run(20000);
+  const auto ask = [&](double q) {
+    const std::vector<double> positions(7, q);
+    const std::vector<Pose> expected = link_poses(kuka_lwr4(), positions);
+    long wrong = 0;
+    for (std::int64_t i = 0; i < run.count; ++i) {
+      const std::vector<Pose> poses = link_poses(model, positions);
+      wrong += difference(poses.back(), expected.back()) > 0 ? 1 : 0;
+    }
+    return wrong;
+  };
+  long wrong_beside = 0;
+  std::thread beside([&] { wrong_beside = ask(0.3); });
+  EXPECT_EQ(ask(-0.7), 0);
+  beside.join();
+  EXPECT_EQ(wrong_beside, 0);
 }
 
 TEST(Kinematics, AllocatesNothingAndRefusesWrongSizes) {
