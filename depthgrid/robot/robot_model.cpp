@@ -42,9 +42,7 @@ struct JointSegment {
 
   KDL::Frame pose(double position) const { return T_parent_axis * T_axis_link.pose(position); }
   /// Of the link's origin, in the parent's frame.
-  KDL::Twist twist(double position, double speed) const {
-    return T_parent_axis.M * T_axis_link.twist(position, speed);
-  }
+  KDL::Twist twist(double position, double speed) const { return T_parent_axis.M * T_axis_link.twist(position, speed); }
 };
 
 JointSegment segment_of(const std::string& link, const JointDescription& joint) {

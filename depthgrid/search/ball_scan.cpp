@@ -8,19 +8,11 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "depthgrid/search/ball_scan.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target: highway.h must be seen once for each target.
-#include <hwy/highway.h>
+// After foreach_target: it must be seen once for each target.
+#include "depthgrid/search/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, 16>;
-using Ints = hn::RebindToSigned<Floats>;
-using V = hn::Vec<Floats>;
-using I = hn::Vec<Ints>;
-using M = hn::Mask<Floats>;
-
 constexpr float kNever = -1e30F;
 /// A window of at most so many pixels a side is looked at pixel by pixel; larger ones by blocks first.
 constexpr int kFewPixels = 64;
@@ -119,13 +111,6 @@ HWY_INLINE M may_meet(const Sides& columns, std::size_t column, const Sides& row
                          hn::Mul(hn::Add(c, c), product));
   const V limit = hn::Sub(square_radius, hn::Mul(hn::Mul(c, c), square_radius));
   return hn::AndNot(hn::And(corner, hn::Gt(edge, limit)), met);
-}
-
-HWY_INLINE std::uint32_t bits_of(M mask) {
-  const Floats d;
-  std::array<std::uint8_t, 8> bytes{};
-  hn::StoreMaskBits(d, mask, bytes.data());
-  return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
 }
 
 HWY_INLINE int whole_vectors(int count) {

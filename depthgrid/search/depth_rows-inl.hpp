@@ -26,7 +26,7 @@ HWY_INLINE void reduce_row(D d_values, const Reader& reader, const Reduction& re
                            const hn::TFromD<D>* values, const PixelRange& columns, PreparationRows& rows) {
   const Floats d;
   const int width_px = image.depth.width_px;
-  const bool robot_here = image.robot.near_m != nullptr && !rows.columns.robot(v).empty();
+  const bool robot_here = image.robot.near_m != nullptr && !rows.columns().robot(v).empty();
   const float* near_m = robot_here ? image.robot.near_m + image.robot.stride_px * v : nullptr;
   const float* far_m = robot_here ? image.robot.far_m + image.robot.stride_px * v : nullptr;
   float* reduced_m = rows.reduced_m();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "depthgrid/search/ball_test.hpp"
+#include "depthgrid/search/blocking_point.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 constexpr double kSqrt3 = 1.7320508075688772;
 /// How finely the border of a frustum W is resolved: the nearest point may lie this far outside of W.
 constexpr double kBorderResolution = 0.5e-3;
-/// Half side over distance at which a cube counts as one piece of the mean direction.
-constexpr double kFineness = 1.0 / 6;
-/// The clock is read once in so many cubes.
-constexpr int kClockInterval = 64;
 /// Primitives this near to each other share an origin, metres. Single precision resolves a micrometre there.
 constexpr double kSharedExtent = 4.0;
 /// Of the cameras' reach with range, as far as leaves follow it.
@@ -24,69 +21,7 @@ constexpr double kLargestRate = 3.2;
 float rounded_down(double value) noexcept { return std::nextafter(static_cast<float>(value), -1e30F); }
 float rounded_up(double value) noexcept { return std::nextafter(static_cast<float>(value), 1e30F); }
 
-bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camera) noexcept {
-  const DepthPoint pixel = project(camera, x_camera);
-  return pixel.x_px >= 0 && pixel.y_px >= 0 && pixel.x_px < camera.width_px && pixel.y_px < camera.height_px;
-}
-
-/// x lies in the camera's not-free set, or its pixel or one of the two beside it has some of that set within slack and
-/// reach of x. The double-precision form of what the cube test hints at.
-bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept {
-  const Eigen::Vector3d x = camera.to_camera(x_local);
-  if (!(x.z() > 0) || !projects_inside(camera.pinhole, x)) {
-    return true;
-  }
-  const PinholeCamera& c = camera.pinhole;
-  const DepthPoint at = project(c, x);
-  const auto u = static_cast<int>(at.x_px);
-  const auto v = static_cast<int>(at.y_px);
-  const auto is_robot = [&](int i, int j, double z_m) {
-    return camera.has_islands && z_m >= static_cast<double>(camera.view->island_near_m().at(i, j)) &&
-           z_m <= static_cast<double>(camera.view->island_far_m().at(i, j));
-  };
-  if (!(x.z() > camera.near_m)) {
-    return !is_robot(u, v, x.z());
-  }
-  const double part_u = at.x_px - u;
-  const double part_v = at.y_px - v;
-  const double slack = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
-  const double tangent = std::hypot(x.x(), x.y()) / x.z();
-  // Beside x at lateral distance s begins a pixel whose border has the tangent t to the optical axis; a depth h beyond
-  // x is within the slack there if (s + t h)^2 + h^2 <= slack^2, so if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2, c^2 (1
-  // + t^2) = 1.
-  const auto reaches = [&](int i, int j, double side_m) {
-    if (side_m > slack || !c.contains(i, j)) {
-      return false;
-    }
-    const double t = tangent + side_m / x.z();
-    const double square = 1 / (1 + t * t);
-    const double rest = slack * slack - side_m * side_m * square;
-    const double z_m = x.z() + std::max(0.0, std::sqrt(square * rest) - side_m * t * square);
-    const auto free_m = static_cast<double>(camera.view->free_m().at(i, j));
-    if (z_m < free_m) {
-      return false;
-    }
-    // What is not free begins at free_m, or where x lies beyond that; in the robot's island it is the robot.
-    return !is_robot(i, j, std::max(free_m, x.z()));
-  };
-  return reaches(u, v, 0) || reaches(part_u < 0.5 ? u - 1 : u + 1, v, std::min(part_u, 1 - part_u) * x.z() / c.fx_px) ||
-         reaches(u, part_v < 0.5 ? v - 1 : v + 1, std::min(part_v, 1 - part_v) * x.z() / c.fy_px);
-}
-
 }  // namespace
-
-void Allowance::end_at(std::chrono::steady_clock::time_point deadline) noexcept {
-  deadline_ = deadline;
-  timed_ = true;
-}
-
-bool Allowance::is_spent() noexcept {
-  if (timed_ && !late_ && --until_clock_ <= 0) {
-    until_clock_ = kClockInterval;
-    late_ = std::chrono::steady_clock::now() >= deadline_;
-  }
-  return late_ || nodes_ <= 0;
-}
 
 Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
     : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
@@ -375,68 +310,6 @@ void Descent::find(Allowance& allowance) noexcept {
     count_.nodes += count;
     split(query_, pair.data(), count, half_side_m(cube.level + 1), children);
     take(children);
-  }
-}
-
-/// Adds a cube to the means of the primitives for which it is fine enough to count as its centre does. Returns these.
-std::uint32_t Descent::add_piece(const Cube& cube, std::span<Eigen::Vector3d> means,
-                                 std::array<double, kGroup>& total) const noexcept {
-  const auto half_m = static_cast<double>(half_side_m(cube.level));
-  const double least_half_m = settings_.rho_m / 32;
-  const Box box = box_of(cube);
-  const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
-  const bool counts = is_blocked(centre, 0);
-  std::uint32_t fine = 0;
-  for (std::uint32_t rest = cube.primitives; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    const AxisToBox pair = nearest(axes_[i].a, axes_[i].b, centre, centre);
-    if (half_m > std::max(least_half_m, kFineness * pair.distance_m)) {
-      continue;
-    }
-    fine |= 1U << i;
-    const double distance_m = pair.distance_m - axes_[i].radius_m;
-    if (counts && distance_m < settings_.rho_m && pair.distance_m > 0) {
-      const double weight =
-          (box.high - box.low).prod() /
-          (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
-      means[i] += weight / pair.distance_m * (centre - pair.on_axis);
-      total[i] += weight;
-    }
-  }
-  return fine;
-}
-
-void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means,
-                                   Allowance& allowance) noexcept {
-  double largest_m = 0;
-  std::array<double, kGroup> total{};
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    means[i].setZero();
-    set_bound(i, settings_.rho_m + axes_[i].radius_m);
-    largest_m = std::max(largest_m, settings_.rho_m + axes_[i].radius_m);
-  }
-  frontier_.reset(static_cast<float>(largest_m));
-  root_.primitives = wanted;
-  if (wanted != 0) {
-    static_cast<void>(frontier_.push(root_));
-  }
-  Cube cube{};
-  Children children;
-  while (frontier_.pop(cube) && !allowance.is_spent()) {
-    allowance.take(1);
-    ++count_.nodes;
-    split(query_, &cube, 1, half_side_m(cube.level + 1), children);
-    for (int n = 0; n < children.count; ++n) {
-      Cube child = children.cubes[static_cast<std::size_t>(n)];
-      const std::uint32_t fine = add_piece(child, means, total);
-      child.primitives &= ~fine;
-      if (child.primitives != 0) {
-        static_cast<void>(frontier_.push(child));  // without room the direction is only coarser
-      }
-    }
-  }
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    means[i] /= total[i] > 0 ? total[i] : 1.0;
   }
 }
 

@@ -3,35 +3,16 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <span>
 
+#include "depthgrid/search/allowance.hpp"
 #include "depthgrid/search/axis_distance.hpp"
 #include "depthgrid/search/cube_test.hpp"
 #include "depthgrid/search/primitive.hpp"
 #include "depthgrid/search/search.hpp"
 
 namespace depthgrid::search {
-
-/// What is left of a call's budget.
-class Allowance {
- public:
-  /// Cubes that may still be opened, of those given last.
-  [[nodiscard]] std::int64_t nodes() const noexcept { return nodes_; }
-  void give(std::int64_t nodes) noexcept { nodes_ = nodes; }
-  void take(std::int64_t nodes) noexcept { nodes_ -= nodes; }
-  void end_at(std::chrono::steady_clock::time_point deadline) noexcept;
-  /// Looks at the clock at its first call and once in so many.
-  [[nodiscard]] bool is_spent() noexcept;
-
- private:
-  std::int64_t nodes_ = 0;
-  std::chrono::steady_clock::time_point deadline_;
-  bool timed_ = false;
-  bool late_ = false;
-  int until_clock_ = 0;
-};
 
 /// One primitive's search. Positions relative to the descent's origin, metres.
 struct Nearest {

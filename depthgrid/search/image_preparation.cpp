@@ -35,16 +35,16 @@ class Passes {
         narrow_(kUnits && reading.ascending && image.reach_px > 0) {}
 
   HWY_INLINE PixelRange run() {
-    rows_.columns.begin(!narrow_);
+    rows_.columns().begin(!narrow_);
     PixelRange island_rows;
     int next = 0;
     int searched = 0;
     // Level 0 lags behind by three rows, whose texels cover the rows below them.
     for (int v = 0; v < height_px_ + 3; v += 2) {
       const int end = std::min(v + 2 + image_.reach_px, height_px_);
-      for (; image_.robot.near_m != nullptr && searched < std::min(end + rows_.columns.lookahead(), height_px_);
+      for (; image_.robot.near_m != nullptr && searched < std::min(end + rows_.columns().lookahead(), height_px_);
            ++searched) {
-        rows_.columns.add_robot(searched, robot_columns(image_, searched));
+        rows_.columns().add_robot(searched, robot_columns(image_, searched));
       }
       take(next, end);
       next = end;
@@ -77,7 +77,7 @@ class Passes {
       narrow_window(rows_.narrow_minimum(v), width_px_, rows_.narrow_window(v));
     }
     for (int v = begin; v < end; ++v) {
-      const PixelRange reduced = rows_.columns.reduced(v);
+      const PixelRange reduced = rows_.columns().reduced(v);
       if (reduced.empty()) {
         continue;
       }
@@ -88,7 +88,7 @@ class Passes {
         reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
                    pixel_row(static_cast<const float*>(result_.kept), width_px_, v), reduced, rows_);
       }
-      filter_row<kReach>(rows_.reduced_m(), rows_.columns.filtered(v), image_.reach_px, rows_.minimum_m(v));
+      filter_row<kReach>(rows_.reduced_m(), rows_.columns().filtered(v), image_.reach_px, rows_.minimum_m(v));
     }
   }
 
@@ -122,16 +122,16 @@ class Passes {
     PixelRange island_rows;
     if (narrow_) {
       from_codes<kReach == 0 ? 0 : 2 * kReach + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
-                                                   result_.free_m, [&](int row) { return rows_.columns.free(row); });
+                                                   result_.free_m, [&](int row) { return rows_.columns().free(row); });
     }
     for (int row = v; row < std::min(v + 2, height_px_); ++row) {
       float* free_m = pixel_row(result_.free_m, width_px_, row);
-      filter_columns<kReach>(rows_, rows_.columns.free(row), image_.reach_px, row, free_m);
-      const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns.robot(row) : PixelRange{};
+      filter_columns<kReach>(rows_, rows_.columns().free(row), image_.reach_px, row, free_m);
+      const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns().robot(row) : PixelRange{};
       if (!robot.empty() && join_robot(image_, row, robot, result_, free_m)) {
         island_rows = joined(island_rows, {row, row + 1});
       }
-      window_row(Smaller(), free_m, width_px_, rows_.columns.windows(row), rows_.window_m(row));
+      window_row(Smaller(), free_m, width_px_, rows_.columns().windows(row), rows_.window_m(row));
     }
     return island_rows;
   }
@@ -141,10 +141,10 @@ class Passes {
     float* level = result_.minima_m + result_.levels[0].offset;
     if (narrow_) {
       from_codes<kReach == 0 ? 0 : 2 * kReach + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
-                                                   [&](int row) { return rows_.columns.texels(row); });
+                                                   [&](int row) { return rows_.columns().texels(row); });
     }
     for (int row = std::max(j, 0); row < std::min(j + 2, height_px_); ++row) {
-      first_level_row(rows_, rows_.columns.texels(row), row, pixel_row(level, width_px_, row));
+      first_level_row(rows_, rows_.columns().texels(row), row, pixel_row(level, width_px_, row));
       minimum_rows_above(result_.levels, row, rows_.scratch(), result_.minima_m);
     }
   }

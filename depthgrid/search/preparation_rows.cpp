@@ -38,7 +38,7 @@ PixelRange FloatColumns::around(int first, int last, int left, int right) const 
 }
 
 PreparationRows::PreparationRows(int width_px, int height_px, int reach_px)
-    : columns(width_px, height_px, reach_px),
+    : columns_(width_px, height_px, reach_px),
       height_px_(height_px),
       reach_px_(reach_px),
       narrow_(width_px, kNarrow + 5 * reach_px + 9),

@@ -112,8 +112,7 @@ class PreparationRows {
   /// For the intermediate result of one row of texels.
   [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
 
-  // No invariant joins it to the rest.
-  FloatColumns columns;  // NOLINT
+  [[nodiscard]] FloatColumns& columns() noexcept { return columns_; }
 
  private:
   static constexpr int kZero = 0;  ///< of both kinds
@@ -122,6 +121,7 @@ class PreparationRows {
   static constexpr int kWide = 4;
   [[nodiscard]] bool outside(int v) const noexcept { return v < 0 || v >= height_px_; }
 
+  FloatColumns columns_;
   int height_px_;
   int reach_px_;
   ScratchRows<std::uint16_t> narrow_;

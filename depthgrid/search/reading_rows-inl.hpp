@@ -18,7 +18,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {
 
-using Ints = hn::RebindToSigned<Floats>;
 using FewUnits = hn::Rebind<std::uint16_t, Floats>;
 using Units = hn::CappedTag<std::uint16_t, 32>;
 

@@ -14,16 +14,11 @@
 #include <cstdint>
 #include <limits>
 
+#include "depthgrid/search/lanes-inl.hpp"
 #include "depthgrid/search/preparation_rows.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, 16>;
-using V = hn::Vec<Floats>;
-using M = hn::Mask<Floats>;
-
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr int kLargestReach = 16;  ///< as validate() of SensorMargin has it

@@ -1,0 +1,17 @@
+// Whether a point lies in or beside what a camera has not seen free: what ends a search.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "depthgrid/search/local_camera.hpp"
+
+namespace depthgrid::search {
+
+/// Whether x, in front of the camera (z > 0), lies in its image. Metres, camera frame.
+[[nodiscard]] bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camera) noexcept;
+
+/// x lies in the camera's not-free set, or its pixel or one of the two beside it has some of that set within slack and
+/// reach of x. The double-precision form of what the cube test hints at.
+[[nodiscard]] bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept;
+
+}  // namespace depthgrid::search

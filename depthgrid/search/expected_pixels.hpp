@@ -1,0 +1,22 @@
+// What is known of the pixels of an octree cube's children before they are looked up.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "depthgrid/search/frontier.hpp"
+#include "depthgrid/search/local_camera.hpp"
+
+namespace depthgrid::search {
+
+struct Expected {
+  /// Pixels between the first and the last that any child projects to, at most.
+  std::uint32_t widest_px = 0;
+  bool islands = false;  ///< whether there may be some of the robot's islands among them
+};
+
+/// Of all children of these cubes, half_m half a side. In scalar arithmetic from the parents alone, because what it
+/// decides must not depend on how many children an instruction set looks at at once.
+[[nodiscard]] Expected expect(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept;
+
+}  // namespace depthgrid::search
