@@ -1,11 +1,10 @@
 // Which machine a figure was taken on.
 #pragma once
 
-#include <string>
+#include "depthgrid/report/machine.hpp"
 
 namespace depthgrid::bench {
 
-/// One line: processor, cores, instruction sets, compiler, date. For the head of a table.
-[[nodiscard]] std::string machine_line();
+using report::machine_line;
 
 }  // namespace depthgrid::bench

@@ -7,6 +7,7 @@
 
 #include "depthgrid/app/demo_command.hpp"
 #include "depthgrid/app/distances_command.hpp"
+#include "depthgrid/app/experiment_command.hpp"
 #include "depthgrid/app/info_command.hpp"
 #include "depthgrid/app/map_command.hpp"
 #include "depthgrid/app/usage_error.hpp"
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
   depthgrid::app::add_distances_command(app);
   depthgrid::app::add_info_command(app);
   depthgrid::app::add_map_command(app);
+  depthgrid::app::add_experiment_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help and --version

@@ -1,11 +1,11 @@
-#include "machine.hpp"
+#include "depthgrid/report/machine.hpp"
 
 #include <array>
 #include <ctime>
 #include <fstream>
 #include <thread>
 
-namespace depthgrid::bench {
+namespace depthgrid::report {
 namespace {
 
 std::string processor() {
@@ -66,4 +66,4 @@ std::string machine_line() {
          "), one used; built for " + built_for() + " by " + compiler() + "; " + text.data();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::report

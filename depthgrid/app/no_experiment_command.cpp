@@ -1,0 +1,20 @@
+// Instead of experiment_command.cpp where the simulated workcell is not built.
+#include <CLI/CLI.hpp>
+
+#include "depthgrid/app/experiment_command.hpp"
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid::app {
+
+void add_experiment_command(CLI::App& app) {
+  CLI::App* const command =
+      app.add_subcommand("experiment", "experiments in the simulated workcell, which this build leaves out");
+  command->allow_extras();
+  command->callback([] {
+    fail(
+        "experiment needs the simulated workcell, which this build leaves out; build with "
+        "-DDEPTHGRID_BUILD_WORKCELL=ON (needs Embree and FCL)");
+  });
+}
+
+}  // namespace depthgrid::app
