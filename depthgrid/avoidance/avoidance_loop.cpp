@@ -1,0 +1,93 @@
+#include "depthgrid/avoidance/avoidance_loop.hpp"
+
+#include "depthgrid/core/error.hpp"
+
+namespace depthgrid::avoidance {
+
+AvoidanceLoop::AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory& history, DistanceSource& source,
+                             const LoopSettings& settings)
+    : model_(model),
+      history_(history),
+      source_(source),
+      settings_(settings),
+      controller_(settings.controller),
+      task_(settings.task),
+      T_world_link_(model.links().size(), Pose::Identity()),
+      parts_world_(settings.parts.size()),
+      answers_(settings.parts.size()),
+      at_link_(settings.parts.size(), Eigen::Vector3d::Zero()) {
+  const auto joints = static_cast<int>(model.joints().size());
+  if (settings.controller.limits.joints() != joints) {
+    fail(model.source(), ": limits for ", settings.controller.limits.joints(), " joints, the robot has ", joints);
+  }
+  if (settings.parts.empty()) {
+    fail("avoidance loop: no part of the robot is asked about; the first one is the end effector");
+  }
+  for (const RobotPart& part : settings.parts) {
+    if (part.link >= model.links().size()) {
+      fail("avoidance loop: a part moves with link ", part.link, ", the robot has ", model.links().size());
+    }
+  }
+  if (settings.evaluate_every < 1) {
+    fail("avoidance loop: evaluates every ", settings.evaluate_every, " periods, must be at least 1");
+  }
+  jacobian_.setZero(6, joints);
+  const control::PointJacobian none = control::PointJacobian::Zero(3, joints);
+  body_.assign(settings.parts.size() - (settings.end_effector_limits ? 0 : 1), {none, {}});
+  end_effector_task_ = {control::TaskJacobian::Zero(3, joints), control::TaskVector::Zero(3)};
+}
+
+bool AvoidanceLoop::start(control::RobotPort& port) noexcept {
+  cycles_ = 0;
+  return port.read(state_) && controller_.start(state_);
+}
+
+void AvoidanceLoop::jacobian(std::size_t link, const Eigen::Vector3d& p_world,
+                             control::PointJacobian& result) noexcept {
+  const std::span<const double> q(state_.position_rad.data(), static_cast<std::size_t>(state_.position_rad.size()));
+  (void)model_.jacobian(q, T_world_link_, link, p_world, jacobian_);
+  result = jacobian_.topRows<3>();
+}
+
+void AvoidanceLoop::evaluate(double now_s) noexcept {
+  report_.evaluated = cycles_ % settings_.evaluate_every == 0;
+  if (!report_.evaluated) {
+    return;
+  }
+  source_.evaluate(parts_world_, now_s, answers_);
+  for (std::size_t i = 0; i < answers_.size(); ++i) {
+    at_link_[i] = T_world_link_[settings_.parts[i].link].inverse(Eigen::Isometry) * answers_[i].at_world;
+  }
+}
+
+bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
+  bool working = port.read(state_);
+  const std::span<const double> q(state_.position_rad.data(), static_cast<std::size_t>(state_.position_rad.size()));
+  working = history_.add(now_s, q) && working;
+  working = model_.link_poses(q, settings_.T_world_base, T_world_link_) && working;
+  place(settings_.parts, T_world_link_, parts_world_);
+  evaluate(now_s);
+
+  // The end effector's point is the origin of the part's link: the task is about the flange, whatever shape is asked
+  // for its distance.
+  const std::size_t tip_link = settings_.parts[0].link;
+  report_.end_effector_world = T_world_link_[tip_link].translation();
+  control::PointJacobian tip;
+  jacobian(tip_link, report_.end_effector_world, tip);
+  end_effector_task_.jacobian = tip;
+  end_effector_task_.velocity = task_.desired_velocity(report_.end_effector_world);
+
+  const std::size_t first = settings_.end_effector_limits ? 0 : 1;
+  for (std::size_t i = first; i < settings_.parts.size(); ++i) {
+    const std::size_t link = settings_.parts[i].link;
+    jacobian(link, T_world_link_[link] * at_link_[i], body_[i - first].jacobian);
+    body_[i - first].obstacle = answers_[i].obstacle;
+  }
+  report_.time_s = now_s;
+  report_.output = controller_.cycle(
+      {.task = end_effector_task_, .end_effector = answers_[0].obstacle, .body = body_, .further_tasks = {}});
+  ++cycles_;
+  return port.write(report_.output.command) && working;
+}
+
+}  // namespace depthgrid::avoidance

@@ -1,0 +1,82 @@
+// The letter's loop around the distances: joint state in, position command out, every period.
+//
+//   q -> parts of the robot in the world -> distances and directions -> obstacles and Jacobians -> controller ->
+//   command
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "depthgrid/avoidance/distance_source.hpp"
+#include "depthgrid/avoidance/robot_parts.hpp"
+#include "depthgrid/control/controller.hpp"
+#include "depthgrid/control/polygon_task.hpp"
+#include "depthgrid/robot/joint_history.hpp"
+#include "depthgrid/robot/robot_model.hpp"
+
+namespace depthgrid::avoidance {
+
+struct LoopSettings {
+  control::ControllerSettings controller;
+  control::PolygonSettings task;     ///< of the end effector's point
+  std::vector<RobotPart> parts;      ///< the first is the end effector: it is repelled; the others are the body
+  bool end_effector_limits = false;  ///< whether the end effector's approach is limited like that of the body, too
+  Pose T_world_base = Pose::Identity();
+  int evaluate_every = 1;  ///< periods between two evaluations; in between obstacles stand where they did
+};
+
+/// What a cycle did.
+struct CycleReport {
+  double time_s = 0;
+  Eigen::Vector3d end_effector_world = Eigen::Vector3d::Zero();
+  bool evaluated = false;  ///< the answers are new
+  control::CycleOutput output;
+};
+
+/// One thread. cycle() neither allocates (as long as the source does not) nor locks nor throws.
+class AvoidanceLoop {
+ public:
+  /// Model, history and source must outlive it. Throws Error when the controller's or task's settings are invalid,
+  /// there is no part, a part's link is none, or the limits are not those of the model's joints in number.
+  AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory& history, DistanceSource& source,
+                const LoopSettings& settings);
+
+  /// Takes the robot's state as the beginning. False when there is none or it is not finite.
+  bool start(control::RobotPort& port) noexcept;
+
+  /// One period at time `now_s`, on the clock of cameras and joint history. False when the robot gave no state or did
+  /// not take the command; without a state the last one is used again.
+  bool cycle(control::RobotPort& port, double now_s) noexcept;
+
+  [[nodiscard]] const CycleReport& report() const noexcept { return report_; }
+  /// Of the last evaluation, one a part, and where the parts are now.
+  [[nodiscard]] std::span<const PartAnswer> answers() const noexcept { return answers_; }
+  [[nodiscard]] std::span<const search::Primitive> parts_world() const noexcept { return parts_world_; }
+  [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
+  [[nodiscard]] const control::PolygonTask& task() const noexcept { return task_; }
+
+ private:
+  void evaluate(double now_s) noexcept;
+  void jacobian(std::size_t link, const Eigen::Vector3d& p_world, control::PointJacobian& result) noexcept;
+
+  const robot::RobotModel& model_;
+  robot::JointHistory& history_;
+  DistanceSource& source_;
+  LoopSettings settings_;
+  control::Controller controller_;
+  control::PolygonTask task_;
+  std::int64_t cycles_ = 0;
+  control::JointState state_;
+  std::vector<Pose> T_world_link_;
+  std::vector<search::Primitive> parts_world_;
+  std::vector<PartAnswer> answers_;
+  std::vector<Eigen::Vector3d> at_link_;  ///< of the answers, in the frames of their links
+  std::vector<control::BodyPoint> body_;
+  control::Task end_effector_task_;
+  robot::Jacobian jacobian_;
+  CycleReport report_;
+};
+
+}  // namespace depthgrid::avoidance
