@@ -1,22 +1,17 @@
 // A picture of one frame: the depth images with the control points and the lines to their nearest obstacles.
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "depthgrid/core/frame.hpp"
-#include "depthgrid/core/proximity.hpp"
 #include "depthgrid/core/rig.hpp"
+#include "depthgrid/report/answers_picture.hpp"
 
 namespace depthgrid::app {
 
-struct PictureLine {
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
-  Proximity answer;
-};
+using PictureLine = report::AnsweredPoint;
 
 /// Draws the cameras side by side, at most three in a row. Points are discs and lines lead to the nearest obstacle
 /// points, coloured from red (contact) to green (rho or more); a ring without line is a point without distance or with

@@ -1,0 +1,50 @@
+// What moves in the cell of the avoidance experiments: nobody, a person by script or by record, a hand above a plate.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "depthgrid/core/rig.hpp"
+#include "depthgrid/simulation/mocap_clip.hpp"
+#include "depthgrid/simulation/person_script.hpp"
+#include "depthgrid/simulation/shapes.hpp"
+
+namespace depthgrid::experiments {
+
+/// Solids in the world frame; always as many of each.
+struct MovingSolids {
+  std::vector<simulation::Capsule> capsules;
+  std::vector<simulation::Box> boxes;
+};
+
+/// A function of time; never changes.
+struct AvoidanceMotion {
+  std::string name;                        ///< with the seed, where there is one
+  std::function<MovingSolids(double)> at;  ///< seconds; empty: nothing moves
+  double duration_s = 0;
+  double v_max_m_s = 0;                   ///< no point of it moves faster
+  std::vector<simulation::Box> plates{};  ///< stand there for this motion only
+};
+
+/// Where the person's scripts play in the avoidance cell.
+[[nodiscard]] simulation::PersonStage avoidance_stage(const Rig& rig);
+
+[[nodiscard]] AvoidanceMotion nobody(double duration_s);
+[[nodiscard]] AvoidanceMotion scripted_motion(simulation::Motion motion, const simulation::PersonStage& stage,
+                                              std::uint64_t seed);
+
+/// The clip turned about the vertical and shifted, so that the middle of its path passes within 0.2 ... 0.8 m of the
+/// stage's place.
+[[nodiscard]] AvoidanceMotion recorded_motion(const simulation::MocapClip& clip, const std::string& name,
+                                              const simulation::PersonStage& stage, std::uint64_t seed);
+
+/// A forearm and hand come down on the end effector while a large plate stands below it, farther away.
+[[nodiscard]] AvoidanceMotion hand_above_plate(const Eigen::Vector3d& end_effector_world);
+
+/// Whether any of it comes within 0.35 m of a camera: people do not walk through cameras.
+[[nodiscard]] bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig);
+
+}  // namespace depthgrid::experiments

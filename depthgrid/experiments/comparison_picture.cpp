@@ -1,0 +1,88 @@
+#include "depthgrid/experiments/comparison_picture.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "depthgrid/report/answers_picture.hpp"
+#include "depthgrid/report/depth_picture.hpp"
+
+namespace depthgrid::experiments {
+
+namespace {
+
+constexpr double kTile = 400;  ///< width of an image in the picture
+constexpr double kGap = 10;
+constexpr double kTitle = 24;
+constexpr double kLegend = 44;
+constexpr double kPlot = 300;
+constexpr std::size_t kColumns = 3;
+constexpr report::DepthRange kRange{0.5, 5.3};
+
+void draw_tile(report::Canvas& canvas, const report::Rectangle& area, const AnswerTile& tile) {
+  canvas.text({area.x_px, area.y_px - 7}, tile.title, 14);
+  report::draw_depth(canvas, area, *tile.depth_m, kRange);
+  if (tile.answers == nullptr) {
+    return;
+  }
+  std::vector<report::AnsweredPoint> points;
+  for (std::size_t i = 0; i < tile.answers->size(); ++i) {
+    points.push_back({tile.instant->points_world[i], (*tile.answers)[i]});
+  }
+  report::draw_answers(canvas, *tile.camera, area, points, DistanceMethod::kRho);
+}
+
+}  // namespace
+
+report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles, const std::vector<report::Plot>& plots) {
+  const std::size_t columns = std::min(kColumns, tiles.size());
+  const std::size_t rows = (tiles.size() + columns - 1) / columns;
+  const double tile_height = 0.75 * kTile + kTitle + kGap;
+  const double width = kGap + static_cast<double>(columns) * (kTile + kGap);
+  const double plots_begin = static_cast<double>(rows) * tile_height + kLegend;
+  report::Canvas canvas(static_cast<int>(width),
+                        static_cast<int>(plots_begin + static_cast<double>(plots.size()) * kPlot + kGap));
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    draw_tile(canvas,
+              {kGap + static_cast<double>(i % columns) * (kTile + kGap),
+               static_cast<double>(i / columns) * tile_height + kTitle, kTile, 0.75 * kTile},
+              tiles[i]);
+  }
+  const double legend_y = static_cast<double>(rows) * tile_height;
+  report::draw_depth_legend(canvas, {kGap, legend_y, 240, 10}, kRange);
+  report::draw_distance_legend(canvas, {kGap + 300, legend_y, 240, 10}, DistanceMethod::kRho);
+  for (std::size_t i = 0; i < plots.size(); ++i) {
+    draw_plot(canvas, {kGap, plots_begin + static_cast<double>(i) * kPlot, width - 2 * kGap, kPlot}, plots[i]);
+  }
+  return canvas;
+}
+
+report::Series smallest_answers(const std::vector<Instant>& instants, std::size_t candidate, std::string label) {
+  report::Series series{std::move(label), {}, {}, false, true};
+  for (const Instant& instant : instants) {
+    double smallest_m = std::numeric_limits<double>::infinity();
+    for (const Proximity& answer : instant.answers[candidate]) {
+      if (has_distance(answer)) {
+        smallest_m = std::min(smallest_m, answer.distance_m);
+      }
+    }
+    series.x.push_back(instant.time_s);
+    series.y.push_back(smallest_m);
+  }
+  return series;
+}
+
+report::Series smallest_truth(const std::vector<Instant>& instants, double rho_m) {
+  report::Series series{"truth", {}, {}, false, true};
+  for (const Instant& instant : instants) {
+    double smallest_m = rho_m;
+    for (const PointTruth::Nearest& truth : instant.truth) {
+      smallest_m = std::min(smallest_m, truth.distance_m);
+    }
+    series.x.push_back(instant.time_s);
+    series.y.push_back(smallest_m);
+  }
+  return series;
+}
+
+}  // namespace depthgrid::experiments

@@ -1,0 +1,32 @@
+// Depth images with the answers of several candidates in them, and how the smallest distance went over time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "depthgrid/experiments/method_comparison.hpp"
+#include "depthgrid/report/canvas.hpp"
+#include "depthgrid/report/plot.hpp"
+
+namespace depthgrid::experiments {
+
+/// One image of a row: what a camera sees, and in it the answers of a candidate.
+struct AnswerTile {
+  std::string title;
+  const RigCamera* camera = nullptr;
+  const DepthImage* depth_m = nullptr;
+  const Instant* instant = nullptr;
+  const std::vector<Proximity>* answers = nullptr;  ///< one a point of the instant; null: none is drawn
+};
+
+/// The tiles side by side, at most three in a row, with the meaning of the colours below; `plots` under them.
+[[nodiscard]] report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles,
+                                             const std::vector<report::Plot>& plots);
+
+/// The smallest answer of a candidate over all control points at each instant; where no answer is a distance, a gap.
+[[nodiscard]] report::Series smallest_answers(const std::vector<Instant>& instants, std::size_t candidate,
+                                              std::string label);
+/// The same of the truth, cut off at rho.
+[[nodiscard]] report::Series smallest_truth(const std::vector<Instant>& instants, double rho_m);
+
+}  // namespace depthgrid::experiments

@@ -1,0 +1,53 @@
+// The ways to compute distances that the experiments compare, behind one interface.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "depthgrid/core/frame.hpp"
+#include "depthgrid/core/proximity.hpp"
+#include "depthgrid/core/rig.hpp"
+#include "depthgrid/simulation/arrangement.hpp"
+
+namespace depthgrid::experiments {
+
+enum class Method : std::uint8_t {
+  letter,         ///< as printed, minimum distance only
+  letter_hybrid,  ///< as printed, with the hybrid vector of equation (11)
+  corrected,      ///< the letter's grid with its errors mended, minimum distance only
+  search,         ///< the sound search, resolution 5 mm
+};
+[[nodiscard]] std::string_view to_string(Method method) noexcept;
+
+/// All of them look into the letter's space of interest, what the principal camera (the first) sees between d_min and
+/// d_max; space outside is ignored, space inside that no camera has seen free is an obstacle. Margins are those of the
+/// rig's cameras, poses and times are exact. rho = 0.4 m.
+class DistanceMethod {
+ public:
+  static constexpr double kRho = 0.4;  ///< metres
+
+  /// `arrangement` says where the space begins and ends. Throws Error when rig or margins are invalid.
+  DistanceMethod(Method method, const Rig& rig, const simulation::Arrangement& arrangement);
+  ~DistanceMethod();
+  DistanceMethod(DistanceMethod&&) noexcept;
+  DistanceMethod& operator=(DistanceMethod&&) noexcept;
+  DistanceMethod(const DistanceMethod&) = delete;
+  DistanceMethod& operator=(const DistanceMethod&) = delete;
+
+  /// One frame a camera, in the rig's order. Throws Error when one is unusable.
+  void update(std::span<const Frame> frames);
+
+  /// Metres, world frame; as many answers as points.
+  void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers);
+
+ private:
+  class Evaluator;
+  class GridMethod;
+  class SearchMethod;
+  std::unique_ptr<Evaluator> evaluator_;
+};
+
+}  // namespace depthgrid::experiments
