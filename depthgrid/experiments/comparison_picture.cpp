@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "depthgrid/experiments/deviation.hpp"
 #include "depthgrid/report/answers_picture.hpp"
 #include "depthgrid/report/depth_picture.hpp"
 
@@ -50,7 +51,9 @@ report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles, const std::
   }
   const double legend_y = static_cast<double>(rows) * tile_height;
   report::draw_depth_legend(canvas, {kGap, legend_y, 240, 10}, kRange);
-  report::draw_distance_legend(canvas, {kGap + 300, legend_y, 240, 10}, DistanceMethod::kRho);
+  if (std::any_of(tiles.begin(), tiles.end(), [](const AnswerTile& tile) { return tile.answers != nullptr; })) {
+    report::draw_distance_legend(canvas, {kGap + 300, legend_y, 240, 10}, DistanceMethod::kRho);
+  }
   for (std::size_t i = 0; i < plots.size(); ++i) {
     draw_plot(canvas, {kGap, plots_begin + static_cast<double>(i) * kPlot, width - 2 * kGap, kPlot}, plots[i]);
   }
@@ -81,6 +84,53 @@ report::Series smallest_truth(const std::vector<Instant>& instants, double rho_m
     }
     series.x.push_back(instant.time_s);
     series.y.push_back(smallest_m);
+  }
+  return series;
+}
+
+report::Series median_answers(const std::vector<Instant>& instants, std::size_t candidate, std::string label) {
+  report::Series series{std::move(label), {}, {}, false, true};
+  for (const Instant& instant : instants) {
+    std::vector<double> distances_m;
+    for (const Proximity& answer : instant.answers[candidate]) {
+      if (has_distance(answer)) {
+        distances_m.push_back(answer.distance_m);
+      }
+    }
+    series.x.push_back(instant.time_s);
+    series.y.push_back(quantile(std::move(distances_m), 0.5));
+  }
+  return series;
+}
+
+report::Series median_truth(const std::vector<Instant>& instants, double rho_m) {
+  report::Series series{"truth", {}, {}, false, true};
+  for (const Instant& instant : instants) {
+    std::vector<double> distances_m;
+    for (const PointTruth::Nearest& truth : instant.truth) {
+      distances_m.push_back(std::min(truth.distance_m, rho_m));
+    }
+    series.x.push_back(instant.time_s);
+    series.y.push_back(quantile(std::move(distances_m), 0.5));
+  }
+  return series;
+}
+
+report::Series point_answers(const std::vector<Instant>& instants, std::size_t candidate, std::size_t point,
+                             std::string label) {
+  report::Series series{std::move(label), {}, {}, false, true};
+  for (const Instant& instant : instants) {
+    series.x.push_back(instant.time_s);
+    series.y.push_back(instant.answers[candidate][point].distance_m);
+  }
+  return series;
+}
+
+report::Series point_truth(const std::vector<Instant>& instants, std::size_t point, double rho_m) {
+  report::Series series{"truth", {}, {}, false, true};
+  for (const Instant& instant : instants) {
+    series.x.push_back(instant.time_s);
+    series.y.push_back(std::min(instant.truth[point].distance_m, rho_m));
   }
   return series;
 }

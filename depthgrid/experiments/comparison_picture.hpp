@@ -29,4 +29,14 @@ struct AnswerTile {
 /// The same of the truth, cut off at rho.
 [[nodiscard]] report::Series smallest_truth(const std::vector<Instant>& instants, double rho_m);
 
+/// The median over all control points at each instant: of a candidate's answers, and of the truth cut off at rho.
+[[nodiscard]] report::Series median_answers(const std::vector<Instant>& instants, std::size_t candidate,
+                                            std::string label);
+[[nodiscard]] report::Series median_truth(const std::vector<Instant>& instants, double rho_m);
+
+/// The answers of a candidate for one control point, and its truth, cut off at rho.
+[[nodiscard]] report::Series point_answers(const std::vector<Instant>& instants, std::size_t candidate,
+                                           std::size_t point, std::string label);
+[[nodiscard]] report::Series point_truth(const std::vector<Instant>& instants, std::size_t point, double rho_m);
+
 }  // namespace depthgrid::experiments

@@ -1,6 +1,8 @@
 #include <array>
 
 #include "depthgrid/experiments/experiment.hpp"
+#include "depthgrid/experiments/hidden_hand.hpp"
+#include "depthgrid/experiments/interference.hpp"
 #include "depthgrid/experiments/shadow.hpp"
 
 namespace depthgrid::experiments {
@@ -9,6 +11,8 @@ namespace {
 
 constexpr std::array kExperiments{
     Experiment{"shadow", "a person between camera and robot: distances with one camera and with two", run_shadow},
+    Experiment{"hidden-hand", "a hand behind the robot: distances with one camera and with two", run_hidden_hand},
+    Experiment{"interference", "two Kinects that disturb each other, and one of them vibrating", run_interference},
 };
 
 }  // namespace
