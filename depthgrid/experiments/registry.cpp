@@ -1,5 +1,6 @@
 #include <array>
 
+#include "depthgrid/experiments/camera_count.hpp"
 #include "depthgrid/experiments/experiment.hpp"
 #include "depthgrid/experiments/hidden_hand.hpp"
 #include "depthgrid/experiments/interference.hpp"
@@ -13,6 +14,7 @@ constexpr std::array kExperiments{
     Experiment{"shadow", "a person between camera and robot: distances with one camera and with two", run_shadow},
     Experiment{"hidden-hand", "a hand behind the robot: distances with one camera and with two", run_hidden_hand},
     Experiment{"interference", "two Kinects that disturb each other, and one of them vibrating", run_interference},
+    Experiment{"cameras", "one to eight cameras: time, gray area, pockets behind the robot", run_camera_count},
 };
 
 }  // namespace

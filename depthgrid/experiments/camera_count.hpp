@@ -1,0 +1,47 @@
+// What more cameras cost and what they give: time of an evaluation, gray area, pockets behind the robot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "depthgrid/experiments/deviation_table.hpp"
+#include "depthgrid/experiments/experiment.hpp"
+#include "depthgrid/experiments/gray_area.hpp"
+
+namespace depthgrid::experiments {
+
+/// One method with one number of cameras.
+struct CountedMethod {
+  std::string label;
+  double evaluation_s = 0;  ///< processor time for nine points, median
+  double update_s = 0;      ///< processor time to prepare the images of one instant, median
+  Deviation deviation;      ///< of the nine control points
+  /// Points of the arm's surface, grown by the padding, that are farther than kFar from everything, and those of them
+  /// that read less than kTouching.
+  std::size_t far = 0;
+  std::size_t pockets = 0;
+};
+
+struct CameraCount {
+  int cameras = 0;
+  GrayArea gray;
+  std::vector<CountedMethod> methods;  ///< letter hybrid, letter, corrected, search
+};
+
+inline constexpr double kFar = 0.10;       ///< metres
+inline constexpr double kTouching = 0.01;  ///< metres
+
+/// time = offset + slope * cameras by least squares, from two cameras on: with one the scan of the grid ends early.
+struct LinearFit {
+  double offset_s = 0;
+  double slope_s = 0;
+  double r_squared = 0;
+};
+[[nodiscard]] LinearFit linear_fit(const std::vector<CameraCount>& counts, std::size_t method);
+
+/// One to eight cameras around the robot, ideal sensors. Throws Error.
+[[nodiscard]] std::vector<CameraCount> measure_camera_counts(const Options& options);
+
+void run_camera_count(const Options& options, ExperimentReport& report);
+
+}  // namespace depthgrid::experiments
