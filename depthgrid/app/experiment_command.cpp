@@ -101,7 +101,11 @@ void add_experiment_command(CLI::App& app) {
                       "folder for report.md, figures.json and pictures; created if its parent exists (default: "
                       "experiment-NAME)");
   command->add_flag("--quick", options->experiment.quick, "smaller images and fewer frames");
-  command->add_option("--seed", options->experiment.seed, "of everything random")->capture_default_str();
+  command->add_option("--seed", options->experiment.seed, "of everything random")
+      ->check([](const std::string& text) {  // an unsigned number is read from "-1" without complaint
+        return text.find('-') == std::string::npos ? "" : text + " must be a whole number, 0 or more";
+      })
+      ->capture_default_str();
   command->add_option("--frames", options->experiment.frames, "instants of time (default: the experiment's own)");
   command->add_option("--width", options->experiment.width_px,
                       "width of the depth images in pixels, which are 4:3 (default: the experiment's own)");
