@@ -8,7 +8,7 @@ namespace depthgrid::experiments {
 
 namespace {
 
-constexpr double kFirstPoint = 0.35;   ///< length along the axis from the base, metres: 4 cm above the shoulder
+constexpr double kFirstPoint = 0.43;   ///< length along the axis from the base, metres: 12 cm above the shoulder
 constexpr double kLastPoint = 1.1785;  ///< the flange
 
 /// On the link in whose part of the axis each lies; with all angles 0 the axis is the world's z.

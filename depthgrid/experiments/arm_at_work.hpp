@@ -30,7 +30,9 @@ class ArmAtWork {
   [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
   /// The links' capsules in the world frame.
   [[nodiscard]] std::span<const simulation::Capsule> capsules_world() const noexcept { return capsules_world_; }
-  /// Nine points evenly spaced on the arm's axis, from above the shoulder to the flange; world frame.
+  /// Nine points evenly spaced on the arm's axis, from above the shoulder to the flange; world frame. All are more than
+  /// 0.4 m above the pedestal, whose top reaches into the robot's base: what stands inside the robot's padding no
+  /// method can see.
   [[nodiscard]] std::span<const Eigen::Vector3d> points_world() const noexcept { return points_world_; }
 
   [[nodiscard]] const robot::RobotModel& model() const noexcept { return model_; }

@@ -55,6 +55,15 @@ TEST(Shadow, OneCameraReportsFalseObstaclesAndTwoDoNot) {
   expect_never_too_far(figures.otherwise);
 }
 
+TEST(Shadow, SearchIsNeverTooFarInFullSizeImagesEither) {
+  Options options = small(4);
+  options.width_px = 640;
+  const ShadowFigures figures = measure_shadow(options, nullptr);
+  EXPECT_GT(figures.in_shadow.back().deviation.compared(), 0U);
+  expect_never_too_far(figures.in_shadow);
+  expect_never_too_far(figures.otherwise);
+}
+
 TEST(Shadow, SameSeedSameFigures) {
   const auto figures = [](std::uint64_t seed) {
     Options options = small(3);
