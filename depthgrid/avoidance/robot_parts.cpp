@@ -14,13 +14,12 @@ RobotPart point_on(const robot::RobotModel& model, const char* link, double x, d
   return {model.link_index(link), p, p, 0.0};
 }
 
-bool moves(const robot::RobotModel& model, std::size_t link) {
+int joints_above(const robot::RobotModel& model, std::size_t link) {
+  int joints = 0;
   for (std::optional<std::size_t> at = link; at; at = model.joint_of_link(*at).parent) {
-    if (model.joint_of_link(*at).joint) {
-      return true;
-    }
+    joints += model.joint_of_link(*at).joint ? 1 : 0;
   }
-  return false;
+  return joints;
 }
 
 }  // namespace
@@ -33,15 +32,15 @@ std::vector<RobotPart> nine_control_points(const robot::RobotModel& model) {
           point_on(model, "lwr_2_link", 0, 0, 0.10)};
 }
 
-std::vector<RobotPart> moving_capsules(const robot::RobotModel& model) {
+std::vector<RobotPart> moving_capsules(const robot::RobotModel& model, int least_joints) {
   std::vector<RobotPart> parts;
   for (const robot::LinkCapsule& item : robot::link_capsules(model)) {
-    if (moves(model, item.link)) {
+    if (joints_above(model, item.link) >= least_joints) {
       parts.push_back({item.link, item.capsule.a, item.capsule.b, item.capsule.radius_m});
     }
   }
   if (parts.empty()) {
-    fail(model.source(), ": no link with a shape moves");
+    fail(model.source(), ": no link with a shape is moved by ", least_joints, " joints");
   }
   std::reverse(parts.begin(), parts.end());
   return parts;

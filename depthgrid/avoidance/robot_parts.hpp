@@ -24,9 +24,11 @@ struct RobotPart {
 /// then eight from the wrist to the shoulder. Throws Error when the model has no links of these names.
 [[nodiscard]] std::vector<RobotPart> nine_control_points(const robot::RobotModel& model);
 
-/// The capsules that contain the links that move, the one farthest from the base first. Throws Error when nothing moves
-/// or a shape cannot be read.
-[[nodiscard]] std::vector<RobotPart> moving_capsules(const robot::RobotModel& model);
+/// The capsules that contain the links that move, the one farthest from the base first. Links that fewer than
+/// `least_joints` joints move are left out: the first link of an upright arm turns about its own axis, so it stays
+/// where it is, and yet what stands beside the base would limit the joint. Throws Error when nothing is left or a shape
+/// cannot be read.
+[[nodiscard]] std::vector<RobotPart> moving_capsules(const robot::RobotModel& model, int least_joints = 2);
 
 /// Where the parts are, given RobotModel::link_poses(); both spans have the same size.
 void place(std::span<const RobotPart> parts, std::span<const Pose> T_world_link,

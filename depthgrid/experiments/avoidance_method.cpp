@@ -89,8 +89,8 @@ std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig&
   return std::make_unique<avoidance::GridDistances>(rig, grid);
 }
 
-avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
-                                      const AvoidanceSettings& settings) {
+avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model, const AvoidanceSettings& settings,
+                                      double hexagon_radius_m) {
   avoidance::LoopSettings result;
   control::ControllerSettings& controller = result.controller;
   controller.limits = joint_limits(model);
@@ -99,7 +99,8 @@ avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& mo
   controller.repulsion.rho_m = settings.rho_m;
   controller.repulsion.v_max_m_s = settings.repulsion_m_s;
   controller.body.rho_m = settings.rho_m;
-  result.task.vertices_world = control::vertical_hexagon(hexagon_centre_world(model), 0.2, Eigen::Vector3d::UnitY());
+  result.task.vertices_world =
+      control::vertical_hexagon(hexagon_centre_world(model), hexagon_radius_m, Eigen::Vector3d::UnitY());
   if (method == Method::search) {
     controller.body.law = control::BodyLaw::approach_row;
     controller.body.gain_per_s = settings.approach_gain_per_s;

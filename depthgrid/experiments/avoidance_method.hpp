@@ -32,14 +32,14 @@ struct AvoidanceSettings {
   int width_px = 160;
   std::string_view sensor = "ideal";
   double period_s = 0.002;
-  double frame_latency_s = 0.02;   ///< from the exposure until the loop has the image
-  double rho_m = 0.4;              ///< of the control laws, and of the letter's evaluation
-  double repulsion_m_s = 1.5;      ///< V_max
-  double v_max_m_s = 2.0;          ///< of obstacles, for the search
-  double ignored_pocket_m = 0.10;  ///< behind the robot, for the search: its declared policy
-  double resolution_m = 0.01;      ///< of the search
-  double approach_gain_per_s = 1.5;
-  double approach_stop_m = 0.05;
+  double frame_latency_s = 0.02;  ///< from the exposure until the loop has the image
+  double rho_m = 0.4;             ///< of the control laws, and of the letter's evaluation
+  double repulsion_m_s = 1.5;     ///< V_max
+  double v_max_m_s = 2.0;         ///< of obstacles, for the search
+  double ignored_pocket_m = 0;    ///< behind the robot, for the search: its declared policy; 0: obstacle
+  double resolution_m = 0.01;     ///< of the search
+  double approach_gain_per_s = 2.0;
+  double approach_stop_m = 0.03;
   double removal_padding_m = 0.01;
   int letter_every = 2;  ///< periods between two evaluations of the letter's methods
 };
@@ -58,6 +58,6 @@ struct AvoidanceSettings {
                                                                      std::size_t parts);
 
 [[nodiscard]] avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
-                                                    const AvoidanceSettings& settings);
+                                                    const AvoidanceSettings& settings, double hexagon_radius_m = 0.2);
 
 }  // namespace depthgrid::experiments

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -12,6 +13,16 @@ namespace depthgrid::experiments {
 
 using simulation::Box;
 using simulation::Capsule;
+
+namespace {
+
+constexpr double kStep = 0.05;  // seconds between the instants that are looked at
+
+double axis_distance_m(const Capsule& capsule, const Eigen::Vector3d& p_world) {
+  return robot::distance_to_axis({capsule.a_world, capsule.b_world, capsule.radius_m}, p_world);
+}
+
+}  // namespace
 
 simulation::PersonStage avoidance_stage(const Rig& rig) {
   simulation::PersonStage stage;
@@ -63,37 +74,60 @@ AvoidanceMotion recorded_motion(const simulation::MocapClip& clip, const std::st
   return result;
 }
 
-AvoidanceMotion hand_above_plate(const Eigen::Vector3d& end_effector_world) {
+AvoidanceMotion hand_against_plate(const Eigen::Vector3d& end_effector_world) {
   AvoidanceMotion result;
-  result.name = "hand above a plate";
+  result.name = "hand against plate";
   result.duration_s = 6;
   result.v_max_m_s = 0.5;
+  result.hexagon_radius_m = 0.03;
+  const Eigen::Vector3d to_plate = Eigen::Vector3d(1, 0, 1).normalized();
   Box plate;
-  plate.T_world_box.translation() = end_effector_world - Eigen::Vector3d(0, 0, 0.33);
-  plate.half_size_m = {0.6, 0.45, 0.01};
+  plate.T_world_box.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), to_plate).toRotationMatrix();
+  plate.T_world_box.translation() = end_effector_world + 0.30 * to_plate;
+  plate.half_size_m = {0.22, 0.40, 0.01};
   result.plates.push_back(plate);
-  const Eigen::Vector3d start = end_effector_world + Eigen::Vector3d(0, -0.05, 0.75);
-  result.at = [start](double time_s) {
-    // Down at 0.25 m/s from 1 s on, to 0.12 m above where the end effector began, and stays there.
-    const double down_m = std::clamp(0.25 * (time_s - 1.0), 0.0, 0.58);
-    const Eigen::Vector3d tip = start - Eigen::Vector3d(0, 0, down_m);
-    const Eigen::Vector3d wrist = tip + Eigen::Vector3d(0, -0.08, 0.12);
-    const Eigen::Vector3d elbow = wrist + Eigen::Vector3d(0, -0.17, 0.20);
-    MovingSolids solids;
-    solids.capsules = {{tip, wrist, 0.045}, {wrist, elbow, 0.045}};
-    return solids;
+  result.at = [end_effector_world, to_plate](double time_s) {
+    // At 0.25 m/s from 1 s on, until the hand's surface is 0.1 m from where the end effector's point began.
+    constexpr double kRadius = 0.045;
+    const double away_m = std::max(0.1, 0.7 - 0.25 * std::max(0.0, time_s - 1.0)) + kRadius;
+    const Eigen::Vector3d tip = end_effector_world - away_m * to_plate;
+    const Eigen::Vector3d wrist = tip - 0.15 * Eigen::Vector3d(0.3, 0.5, 1).normalized();
+    const Eigen::Vector3d elbow = wrist - 0.26 * Eigen::Vector3d(0.3, 0.5, 1).normalized();
+    return MovingSolids{{{tip, wrist, kRadius}, {wrist, elbow, kRadius}}, {}};
   };
   return result;
 }
 
+AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3d& p_world, double duration_s) {
+  constexpr double kBefore = 0.5;  // share of the part that comes before the nearest instant
+  if (!motion.at || motion.duration_s <= duration_s) {
+    return motion;
+  }
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double nearest_s = 0;
+  for (double t = 0; t <= motion.duration_s; t += kStep) {
+    for (const Capsule& capsule : motion.at(t).capsules) {
+      const double distance_m = axis_distance_m(capsule, p_world) - capsule.radius_m;
+      if (distance_m < nearest_m) {
+        nearest_m = distance_m;
+        nearest_s = t;
+      }
+    }
+  }
+  const double begin_s = std::clamp(nearest_s - kBefore * duration_s, 0.0, motion.duration_s - duration_s);
+  AvoidanceMotion part = motion;
+  part.at = [whole = motion.at, begin_s](double time_s) { return whole(begin_s + time_s); };
+  part.duration_s = duration_s;
+  return part;
+}
+
 bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig) {
-  constexpr double kStep = 0.05;
   constexpr double kNear = 0.35;
   for (double t = 0; motion.at && t <= motion.duration_s; t += kStep) {
     for (const Capsule& capsule : motion.at(t).capsules) {
       for (const RigCamera& camera : rig.cameras) {
-        const robot::Capsule axis{capsule.a_world, capsule.b_world, capsule.radius_m};
-        if (robot::distance_to_axis(axis, camera.T_world_camera.translation()) < kNear + capsule.radius_m) {
+        if (axis_distance_m(capsule, camera.T_world_camera.translation()) < kNear + capsule.radius_m) {
           return true;
         }
       }

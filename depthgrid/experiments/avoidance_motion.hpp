@@ -1,4 +1,4 @@
-// What moves in the cell of the avoidance experiments: nobody, a person by script or by record, a hand above a plate.
+// What moves in the cell of the avoidance experiments: nobody, a person by script or by record, a hand and a plate.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +27,7 @@ struct AvoidanceMotion {
   double duration_s = 0;
   double v_max_m_s = 0;                   ///< no point of it moves faster
   std::vector<simulation::Box> plates{};  ///< stand there for this motion only
+  double hexagon_radius_m = 0.2;          ///< of the task
 };
 
 /// Where the person's scripts play in the avoidance cell.
@@ -41,8 +42,13 @@ struct AvoidanceMotion {
 [[nodiscard]] AvoidanceMotion recorded_motion(const simulation::MocapClip& clip, const std::string& name,
                                               const simulation::PersonStage& stage, std::uint64_t seed);
 
-/// A forearm and hand come down on the end effector while a large plate stands below it, farther away.
-[[nodiscard]] AvoidanceMotion hand_above_plate(const Eigen::Vector3d& end_effector_world);
+/// A hand comes from the principal camera's side and from below, a large plate that this camera sees hangs on the other
+/// side of the end effector, farther away. The task is a small hexagon.
+[[nodiscard]] AvoidanceMotion hand_against_plate(const Eigen::Vector3d& end_effector_world);
+
+/// At most `duration_s` of a motion, around the time when it is nearest to a point: time begins anew there.
+[[nodiscard]] AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3d& p_world,
+                                           double duration_s);
 
 /// Whether any of it comes within 0.35 m of a camera: people do not walk through cameras.
 [[nodiscard]] bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig);

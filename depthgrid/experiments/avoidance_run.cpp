@@ -14,9 +14,10 @@ namespace depthgrid::experiments {
 namespace {
 
 constexpr double kFrameRate = 30;
-constexpr double kApart = 0.02;      // a contact ends when robot and person are this far apart
-constexpr double kTolerance = 0.01;  // an over-estimate smaller than this is not counted
-constexpr double kSlowShare = 0.1;   // of the task's speed
+constexpr double kApart = 0.02;           // a contact ends when robot and person are this far apart
+constexpr double kCoveredByPoint = 0.12;  // a control point stands for a link's surface at most this far away
+constexpr double kTolerance = 0.01;       // an over-estimate smaller than this is not counted
+constexpr double kSlowShare = 0.1;        // of the task's speed
 
 /// The images of one exposure on their way to the loop.
 struct Exposure {
@@ -41,7 +42,7 @@ class Run {
         common_(settings.common),
         method_(method),
         rig_(avoidance_rig(std::max(1, cameras_of(method)), common_.width_px, common_.sensor)),
-        loop_settings_(loop_settings(method, model, common_)),
+        loop_settings_(loop_settings(method, model, common_, motion.hexagon_radius_m)),
         history_(model.joints().size(), 256, 0.02, 0.0),
         source_(make_source(method, rig_, common_, loop_settings_.parts.size())),
         loop_(model, history_, *source_, loop_settings_),
@@ -155,7 +156,7 @@ class Run {
       watch_person(time_s, *person);
     }
     if (settings_.sample_every > 0 && k % settings_.sample_every == 0) {
-      RunSample sample{time_s, tip, person_m, loop_.report().output.repulsion_m_s.norm(), {}};
+      RunSample sample{time_s, tip, person_m, loop_.report().output.repulsion_m_s, {}};
       for (const avoidance::PartAnswer& answer : loop_.answers()) {
         sample.told_m.push_back(std::min(common_.rho_m, answer.obstacle.distance_m.value_or(0)));
       }
@@ -215,11 +216,12 @@ class Run {
     contact.person_m_s = closing_before_m_s_ - speed_before_m_s_;
     contact.told_m = before_told_m_;
     contact.really_m = before_->distance_m;
+    const double tolerance_m = method_ == Method::search ? kTolerance : kCoveredByPoint;
     if (contact.robot_m_s <= kStanding_m_s) {
       contact.cause = ContactCause::robot_stood;
     } else if (contact.person_m_s > common_.v_max_m_s) {
       contact.cause = ContactCause::faster_than_v_max;
-    } else if (contact.told_m && *contact.told_m > contact.really_m + kTolerance && method_ == Method::search) {
+    } else if (method_ != Method::none && contact.told_m && *contact.told_m > contact.really_m + tolerance_m) {
       contact.cause = ContactCause::hidden;
     } else {
       contact.cause = ContactCause::robot_came;

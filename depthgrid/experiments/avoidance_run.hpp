@@ -39,7 +39,7 @@ struct RunSample {
   double time_s = 0;
   Eigen::Vector3d end_effector_world;
   double true_person_m = std::numeric_limits<double>::infinity();
-  double repulsion_m_s = 0;    ///< of the end effector
+  Eigen::Vector3d repulsion_m_s = Eigen::Vector3d::Zero();  ///< of the end effector, world frame
   std::vector<double> told_m;  ///< one a part, the end effector first; rho where nothing is near
 };
 

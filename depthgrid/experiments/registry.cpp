@@ -1,6 +1,7 @@
 #include <array>
 
 #include "depthgrid/experiments/camera_count.hpp"
+#include "depthgrid/experiments/campaign.hpp"
 #include "depthgrid/experiments/experiment.hpp"
 #include "depthgrid/experiments/hidden_hand.hpp"
 #include "depthgrid/experiments/interference.hpp"
@@ -15,6 +16,8 @@ constexpr std::array kExperiments{
     Experiment{"hidden-hand", "a hand behind the robot: distances with one camera and with two", run_hidden_hand},
     Experiment{"interference", "two Kinects that disturb each other, and one of them vibrating", run_interference},
     Experiment{"cameras", "one to eight cameras: time, gray area, pockets behind the robot", run_camera_count},
+    Experiment{"campaign", "many random people beside an arm that avoids them: contacts, distances, task time",
+               run_campaign},
 };
 
 }  // namespace

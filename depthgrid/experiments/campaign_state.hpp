@@ -1,0 +1,50 @@
+// What the campaign has found so far, in a file: one entry a motion, each with all methods.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "depthgrid/experiments/avoidance_run.hpp"
+
+namespace depthgrid::experiments {
+
+/// A run's result without its samples.
+struct RunSummary {
+  double task_share = 0;
+  double smallest_person_m = 0;  ///< infinity with nobody
+  double in_contact_s = 0;
+  double stopped_s = 0;
+  double false_stop_s = 0;
+  std::int64_t over_estimates = 0;
+  double largest_over_estimate_m = 0;
+  std::int64_t watched = 0;
+  int object_contacts = 0;
+  std::vector<Contact> contacts;
+};
+
+[[nodiscard]] RunSummary summary_of(const RunResult& result);
+
+struct MotionOutcome {
+  std::string name;
+  double v_max_m_s = 0;
+  std::map<Method, RunSummary> runs;
+};
+
+struct CampaignState {
+  /// What must be the same for runs to belong together.
+  nlohmann::ordered_json settings;
+  std::map<int, MotionOutcome> motions;  ///< by number
+};
+
+/// The file is written whole or not at all. Throws Error that names it.
+void write_campaign_state(const std::filesystem::path& file, const CampaignState& state);
+
+/// What the file holds; an empty state when there is none. Throws Error that names the file when it is no state, or one
+/// of other settings than these.
+[[nodiscard]] CampaignState read_campaign_state(const std::filesystem::path& file,
+                                                const nlohmann::ordered_json& settings);
+
+}  // namespace depthgrid::experiments
