@@ -17,15 +17,22 @@ struct CountedMethod {
   double update_s = 0;      ///< processor time to prepare the images of one instant, median
   Deviation deviation;      ///< of the nine control points
   /// Points of the arm's surface, grown by the padding, that are farther than kFar from everything, and those of them
-  /// that read less than kTouching.
+  /// that read less than kTouching; letter and search only.
   std::size_t far = 0;
   std::size_t pockets = 0;
 };
 
+// Places in CameraCount::methods.
+inline constexpr std::size_t kCountedHybrid = 0;  ///< letter, hybrid
+inline constexpr std::size_t kCountedLetter = 1;
+inline constexpr std::size_t kCountedCorrected = 2;
+inline constexpr std::size_t kCountedSearch = 3;
+inline constexpr std::size_t kCountedMethods = 4;
+
 struct CameraCount {
   int cameras = 0;
   GrayArea gray;
-  std::vector<CountedMethod> methods;  ///< letter hybrid, letter, corrected, search
+  std::vector<CountedMethod> methods;
 };
 
 inline constexpr double kFar = 0.10;       ///< metres

@@ -44,9 +44,11 @@ report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles, const std::
   report::Canvas canvas(static_cast<int>(width),
                         static_cast<int>(plots_begin + static_cast<double>(plots.size()) * kPlot + kGap));
   for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const std::size_t row = i / columns;
+    const std::size_t column = i % columns;
     draw_tile(canvas,
-              {kGap + static_cast<double>(i % columns) * (kTile + kGap),
-               static_cast<double>(i / columns) * tile_height + kTitle, kTile, 0.75 * kTile},
+              {kGap + static_cast<double>(column) * (kTile + kGap), static_cast<double>(row) * tile_height + kTitle,
+               kTile, 0.75 * kTile},
               tiles[i]);
   }
   const double legend_y = static_cast<double>(rows) * tile_height;

@@ -6,6 +6,8 @@
 
 namespace depthgrid::experiments {
 
+void Deviation::leave_out() { ++not_compared_; }
+
 void Deviation::add(const Proximity& answer, double true_m) {
   const double truth_m = std::min(true_m, rho_m_);
   const bool border_nearer = std::isfinite(answer.known_to_m) && answer.known_to_m < truth_m;
@@ -52,8 +54,8 @@ double quantile(std::vector<double> values, double q) {
   if (values.empty()) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const auto index = static_cast<std::size_t>(std::clamp(q, 0.0, 1.0) * static_cast<double>(values.size() - 1) + 0.5);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(index);
+  const long index = std::lround(std::clamp(q, 0.0, 1.0) * static_cast<double>(values.size() - 1));
+  const auto at = values.begin() + index;
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }

@@ -19,6 +19,8 @@ class Deviation {
   explicit Deviation(double rho_m) : rho_m_(rho_m) {}
 
   void add(const Proximity& answer, double true_m);
+  /// An answer that is not compared, because something stands where no method can see it: inside the robot's padding.
+  void leave_out();
 
   [[nodiscard]] std::size_t compared() const noexcept { return short_m_.size(); }
   [[nodiscard]] std::size_t not_compared() const noexcept { return not_compared_; }

@@ -6,6 +6,7 @@ namespace depthgrid::experiments {
 
 std::string deviation_table(const std::vector<LabelledDeviation>& rows) {
   std::vector<std::vector<std::string>> cells;
+  cells.reserve(rows.size());
   for (const auto& [label, deviation] : rows) {
     cells.push_back({label, std::to_string(deviation.compared()), percent(deviation.false_obstacles()),
                      fixed(1000 * deviation.shortfall_m(0.5)) + " / " + fixed(1000 * deviation.shortfall_m(0.95)),

@@ -23,6 +23,38 @@ std::vector<DepthImage> free_depths(const CameraImages& images) {
   return free_m;
 }
 
+struct Sampler {
+  const StagedCell& stage;
+  const CameraImages& images;
+  simulation::Scene scene;
+  std::vector<DepthImage> free_m;
+
+  [[nodiscard]] bool seen_free(const Eigen::Vector3d& p_world) const {
+    for (std::size_t k = 0; k < free_m.size(); ++k) {
+      if (report::sees_past(images.rig().cameras[k], free_m[k], p_world)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool near_arm(const Eigen::Vector3d& p_world) const {
+    const auto points = stage.arm().points_world();
+    return std::any_of(points.begin(), points.end(),
+                       [&](const Eigen::Vector3d& point) { return (point - p_world).norm() < DistanceMethod::kRho; });
+  }
+
+  /// One point's counts; none where it lies in a body.
+  [[nodiscard]] GrayArea at(const Eigen::Vector3d& p_world) const {
+    if (scene.contains(p_world, simulation::Body::obstacle) || scene.contains(p_world, simulation::Body::robot)) {
+      return {};
+    }
+    const std::size_t gray = seen_free(p_world) ? 0 : 1;
+    const std::size_t close = near_arm(p_world) ? 1 : 0;
+    return {1, gray, close, close * gray};
+  }
+};
+
 double ratio(std::size_t part, std::size_t whole) noexcept {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -43,29 +75,14 @@ GrayArea gray_area(const StagedCell& stage, const CameraImages& images, const si
   if (!(spacing_m > 0)) {
     fail("gray area: spacing is ", spacing_m, " m, must be positive");
   }
-  const std::vector<DepthImage> free_m = free_depths(images);
-  const simulation::Scene scene = simulation::scene_of(stage.cell());
+  const Sampler sampler{stage, images, simulation::scene_of(stage.cell()), free_depths(images)};
   const Eigen::Vector3d& low = arrangement.workspace_low_world;
-  const Eigen::Vector3d& high = arrangement.workspace_high_world;
+  const Eigen::Array3d size = (arrangement.workspace_high_world - low).array();
+  const Eigen::Array3i count = (size / spacing_m).round().cast<int>();
   GrayArea result;
-  for (double x = low.x() + 0.5 * spacing_m; x < high.x(); x += spacing_m) {
-    for (double y = low.y() + 0.5 * spacing_m; y < high.y(); y += spacing_m) {
-      for (double z = low.z() + 0.5 * spacing_m; z < high.z(); z += spacing_m) {
-        const Eigen::Vector3d p_world(x, y, z);
-        if (scene.contains(p_world, simulation::Body::obstacle) || scene.contains(p_world, simulation::Body::robot)) {
-          continue;
-        }
-        bool seen_free = false;
-        for (std::size_t k = 0; k < free_m.size() && !seen_free; ++k) {
-          seen_free = report::sees_past(images.rig().cameras[k], free_m[k], p_world);
-        }
-        const auto points = stage.arm().points_world();
-        const bool near_arm = std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
-          return (point - p_world).norm() < DistanceMethod::kRho;
-        });
-        result.add({1, seen_free ? 0U : 1U, near_arm ? 1U : 0U, near_arm && !seen_free ? 1U : 0U});
-      }
-    }
+  for (int i = 0; i < count.prod(); ++i) {
+    const Eigen::Vector3d index(i % count.x(), i / count.x() % count.y(), i / count.x() / count.y());
+    result.add(sampler.at(low + spacing_m * (index.array() + 0.5).matrix()));
   }
   return result;
 }

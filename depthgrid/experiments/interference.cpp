@@ -116,7 +116,7 @@ std::vector<InterferenceCase> measure_interference(const Options& options, Exper
     std::vector<AnswerTile> tiles;
     for (std::size_t s = 0; s < kSettings.size(); ++s) {
       tiles.push_back({std::string(kSettings[s].title) + ": " + percent(cases[s].invalid_share[0]) + " invalid",
-                       &rig.cameras[0], &first_images[s], nullptr, nullptr});
+                       &rig.cameras.front(), &first_images[s], nullptr, nullptr});
     }
     pictures->picture(
         "interference.png", draw_comparison(tiles, {letter_plot, search_plot}),

@@ -32,7 +32,7 @@ struct Instant {
   std::vector<PointTruth::Nearest> truth;       ///< one a point
   std::vector<std::vector<Proximity>> answers;  ///< one row a candidate, one answer a point
   double person_to_arm_m = 0;                   ///< real distance from the person to the arm's surface
-  std::size_t points_behind_person = 0;  ///< control points whose line of sight to the principal camera he crosses
+  std::size_t points_behind_person = 0;  ///< control points whose line of sight to the principal camera is crossed
 };
 
 /// How many of the arm's control points the person hides from a camera that stands there (world frame).

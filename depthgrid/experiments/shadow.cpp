@@ -49,6 +49,7 @@ constexpr std::size_t kLetterTwoUnknown = 7;
 constexpr std::size_t kSearchTwoUnknown = 9;
 constexpr std::size_t kSearchThree = 13;
 
+constexpr double kStep = 0.05;   ///< seconds between the instants that are looked at for the shadow
 constexpr double kBefore = 1.5;  ///< seconds of the motion that are looked at before and after the shadow
 
 /// When the person hides the arm from the first camera, and a little more.
@@ -58,7 +59,8 @@ struct Window {
 };
 Window shadow_window(StagedCell& stage, const Eigen::Vector3d& camera_world) {
   Window window{std::numeric_limits<double>::infinity(), 0};
-  for (double time_s = 0; time_s <= stage.person().duration_s(); time_s += 0.05) {
+  for (int step = 0; step * kStep <= stage.person().duration_s(); ++step) {
+    const double time_s = step * kStep;
     stage.move_to(time_s);
     if (points_behind_person(stage, camera_world) > 0) {
       window = {std::min(window.begin_s, time_s), time_s};

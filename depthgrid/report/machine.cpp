@@ -24,10 +24,10 @@ std::string instruction_sets() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
   std::string sets = "x86-64";
-  if (__builtin_cpu_supports("avx2") != 0) {
+  if (static_cast<int>(__builtin_cpu_supports("avx2")) != 0) {
     sets += ", AVX2";
   }
-  if (__builtin_cpu_supports("avx512f") != 0) {
+  if (static_cast<int>(__builtin_cpu_supports("avx512f")) != 0) {
     sets += ", AVX-512";
   }
   return sets;
@@ -61,7 +61,7 @@ std::string machine_line() {
   std::tm date{};
   gmtime_r(&now, &date);
   std::array<char, 16> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
+  (void)std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
   return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores (" + instruction_sets() +
          "), one used; built for " + built_for() + " by " + compiler() + "; " + text.data();
 }
