@@ -20,7 +20,12 @@ void SearchDistances::evaluate(std::span<const search::Primitive> parts_world, d
                                std::span<PartAnswer> answers) noexcept {
   const std::size_t count = std::min({parts_world.size(), answers.size(), found_.size()});
   const search::Snapshot snapshot = store_.snapshot();
-  search_.hybrid(snapshot, parts_world.first(count), std::span(found_).first(count), budget_);
+  const std::size_t led = std::min<std::size_t>(1, count);
+  const search::Budget of_first{budget_.nodes / 4, budget_.time_s / 4};
+  const search::Budget of_others{budget_.nodes - of_first.nodes, budget_.time_s - of_first.time_s};
+  search_.hybrid(snapshot, parts_world.first(led), std::span(found_).first(led), of_first);
+  search_.distances(snapshot, parts_world.subspan(led, count - led), std::span(found_).subspan(led, count - led),
+                    of_others);
   const double age_s = std::max(0.0, now_s - snapshot.reference_time_s());
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (i >= count) {

@@ -13,7 +13,8 @@ namespace depthgrid::avoidance {
 /// with nothing around is taken for one whose neighbourhood is unknown.
 class SearchDistances final : public DistanceSource {
  public:
-  /// `parts`: the most that evaluate() is asked for at a time. Throws Error as ViewStore does.
+  /// `parts`: the most that evaluate() is asked for at a time. `budget`: of one evaluate(), a quarter of it for the end
+  /// effector. Throws Error as ViewStore does.
   SearchDistances(const Rig& rig, const search::Settings& settings, std::size_t parts,
                   const search::Budget& budget = {});
 

@@ -14,13 +14,13 @@ constexpr double kFramePeriod = 1.0 / 30;
 }  // namespace
 
 std::string_view title(Method method) noexcept {
-  constexpr std::array<std::string_view, 4> kTitles{"no avoidance", "letter, 1 camera", "letter, 2 cameras",
-                                                    "search, 2 cameras"};
+  constexpr std::array<std::string_view, 5> kTitles{"no avoidance", "letter, 1 camera", "letter, 2 cameras",
+                                                    "search, 2 cameras", "search, pockets ignored"};
   return kTitles.at(static_cast<std::size_t>(method));
 }
 
 std::string_view key(Method method) noexcept {
-  constexpr std::array<std::string_view, 4> kKeys{"none", "letter_one", "letter_two", "search"};
+  constexpr std::array<std::string_view, 5> kKeys{"none", "letter_one", "letter_two", "search", "search_pockets"};
   return kKeys.at(static_cast<std::size_t>(method));
 }
 
@@ -55,14 +55,14 @@ control::JointLimits joint_limits(const robot::RobotModel& model) {
   return limits;
 }
 
-search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings) {
+search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings, double ignored_pocket_m) {
   const simulation::Arrangement letter = simulation::letter_arrangement();
   search::Settings result;
   result.space = search::BoxSpace{letter.workspace_low_world, letter.workspace_high_world};
   result.policies.unobserved = search::Policy::obstacle;
   result.policies.outside = search::Policy::obstacle;
-  result.policies.robot_pockets = settings.ignored_pocket_m > 0 ? search::Policy::ignored : search::Policy::obstacle;
-  result.policies.ignored_pocket_m = settings.ignored_pocket_m;
+  result.policies.robot_pockets = ignored_pocket_m > 0 ? search::Policy::ignored : search::Policy::obstacle;
+  result.policies.ignored_pocket_m = ignored_pocket_m;
   result.margins = camera_margins(rig);
   result.v_max_m_s = settings.v_max_m_s;
   result.resolution_m = settings.resolution_m;
@@ -71,13 +71,20 @@ search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settin
   return result;
 }
 
+robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings) {
+  robot::ExposureSettings result;
+  result.removal.padding_m = settings.removal_padding_m;
+  return result;
+}
+
 std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig& rig, const AvoidanceSettings& settings,
                                                        std::size_t parts) {
   if (method == Method::none) {
     return std::make_unique<avoidance::NoDistances>();
   }
-  if (method == Method::search) {
-    return std::make_unique<avoidance::SearchDistances>(rig, search_settings(rig, settings), parts);
+  if (is_search(method)) {
+    const double pocket_m = method == Method::search_pockets ? settings.ignored_pocket_m : 0;
+    return std::make_unique<avoidance::SearchDistances>(rig, search_settings(rig, settings, pocket_m), parts);
   }
   const simulation::Arrangement letter = simulation::letter_arrangement();
   avoidance::GridDistancesSettings grid;
@@ -92,6 +99,7 @@ std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig&
 avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model, const AvoidanceSettings& settings,
                                       double hexagon_radius_m) {
   avoidance::LoopSettings result;
+  result.evaluate_every = settings.evaluate_every;
   control::ControllerSettings& controller = result.controller;
   controller.limits = joint_limits(model);
   controller.period_s = settings.period_s;
@@ -101,7 +109,7 @@ avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& mo
   controller.body.rho_m = settings.rho_m;
   result.task.vertices_world =
       control::vertical_hexagon(hexagon_centre_world(model), hexagon_radius_m, Eigen::Vector3d::UnitY());
-  if (method == Method::search) {
+  if (is_search(method)) {
     controller.body.law = control::BodyLaw::approach_row;
     controller.body.gain_per_s = settings.approach_gain_per_s;
     controller.body.stop_m = settings.approach_stop_m;
@@ -110,7 +118,6 @@ avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& mo
   } else {
     controller.repulsion.form = control::RepulsionForm::letter;
     result.parts = avoidance::nine_control_points(model);
-    result.evaluate_every = method == Method::none ? 1 : settings.letter_every;
   }
   return result;
 }

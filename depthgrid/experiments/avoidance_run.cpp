@@ -26,12 +26,6 @@ struct Exposure {
   std::vector<DepthView> views;
 };
 
-robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings) {
-  robot::ExposureSettings result;
-  result.removal.padding_m = settings.removal_padding_m;
-  return result;
-}
-
 /// One run while it goes on.
 class Run {
  public:
@@ -156,7 +150,7 @@ class Run {
       watch_person(time_s, *person);
     }
     if (settings_.sample_every > 0 && k % settings_.sample_every == 0) {
-      RunSample sample{time_s, tip, person_m, loop_.report().output.repulsion_m_s, {}};
+      RunSample sample{time_s, joints_now(), tip, person_m, loop_.report().output.repulsion_m_s, {}};
       for (const avoidance::PartAnswer& answer : loop_.answers()) {
         sample.told_m.push_back(std::min(common_.rho_m, answer.obstacle.distance_m.value_or(0)));
       }
@@ -168,7 +162,7 @@ class Run {
     if (person.distance_m < common_.rho_m) {
       ++result_.watched;
       const std::optional<double> told_m = told_of_link_m(person.link);
-      if (method_ == Method::search && told_m) {
+      if (is_search(method_) && told_m) {
         const double over_m = *told_m - person.distance_m;
         result_.over_estimates += over_m > kTolerance ? 1 : 0;
         result_.largest_over_estimate_m = std::max(result_.largest_over_estimate_m, over_m);
@@ -190,10 +184,16 @@ class Run {
     }
   }
 
+  /// Where the joints were in the cycle that has just been done.
+  [[nodiscard]] control::JointVector joints_now() const {
+    const control::JointCommand& command = loop_.report().output.command;
+    return command.position_rad - common_.period_s * command.velocity_rad_s;
+  }
+
   /// How fast the nearest point of the robot moves towards the person.
   [[nodiscard]] double robot_speed_m_s(const TrueDistance& person) {
     const control::JointCommand& command = loop_.report().output.command;
-    const control::JointVector q = command.position_rad - common_.period_s * command.velocity_rad_s;
+    const control::JointVector q = joints_now();
     robot::Jacobian jacobian = robot::Jacobian::Zero(6, q.size());
     (void)model_.jacobian({q.data(), static_cast<std::size_t>(q.size())}, loop_.T_world_link(), person.link,
                           person.on_robot_world, jacobian);
@@ -216,7 +216,7 @@ class Run {
     contact.person_m_s = closing_before_m_s_ - speed_before_m_s_;
     contact.told_m = before_told_m_;
     contact.really_m = before_->distance_m;
-    const double tolerance_m = method_ == Method::search ? kTolerance : kCoveredByPoint;
+    const double tolerance_m = is_search(method_) ? kTolerance : kCoveredByPoint;
     if (contact.robot_m_s <= kStanding_m_s) {
       contact.cause = ContactCause::robot_stood;
     } else if (contact.person_m_s > common_.v_max_m_s) {

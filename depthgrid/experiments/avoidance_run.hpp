@@ -37,6 +37,7 @@ struct Contact {
 /// One instant of a run.
 struct RunSample {
   double time_s = 0;
+  control::JointVector q_rad;
   Eigen::Vector3d end_effector_world;
   double true_person_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d repulsion_m_s = Eigen::Vector3d::Zero();  ///< of the end effector, world frame

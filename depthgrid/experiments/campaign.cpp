@@ -130,6 +130,7 @@ nlohmann::ordered_json settings_of(const CampaignPlan& plan, bool with_recording
           {"frame_latency_s", plan.common.frame_latency_s},
           {"v_max_m_s", plan.common.v_max_m_s},
           {"ignored_pocket_m", plan.common.ignored_pocket_m},
+          {"evaluate_every", plan.common.evaluate_every},
           {"recordings", with_recordings}};
 }
 
