@@ -71,6 +71,22 @@ std::string time_table(const std::vector<CameraCount>& counts) {
   return markdown_table(head, rows);
 }
 
+std::string preparation_table(const std::vector<CameraCount>& counts) {
+  std::vector<std::string> head{"cameras"};
+  for (const CountedMethod& method : counts[0].methods) {
+    head.push_back(method.label + ", ms");
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const CameraCount& count : counts) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row.push_back(std::to_string(count.cameras));
+    for (const CountedMethod& method : count.methods) {
+      row.push_back(milliseconds(method.update_s));
+    }
+  }
+  return markdown_table(head, rows);
+}
+
 std::string pockets_text(const CountedMethod& method) {
   return percent(static_cast<double>(method.pockets) / static_cast<double>(std::max<std::size_t>(1, method.far)));
 }
@@ -124,6 +140,8 @@ void run_camera_count(const Options& options, ExperimentReport& report) {
       "With one camera the nearest obstacle is the robot's own shadow, so the scan ends early: straight lines are "
       "fitted "
       "from two cameras on.");
+  report.paragraph("Processor time to prepare the images of one instant, all cameras:");
+  report.paragraph(preparation_table(counts));
   report.paragraph(left_table(counts));
   report.paragraph(
       "*pockets*: points of the robot's surface (grown by the padding of its removal) that read less than 10 mm though "

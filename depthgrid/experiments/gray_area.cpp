@@ -81,8 +81,8 @@ GrayArea gray_area(const StagedCell& stage, const CameraImages& images, const si
   const Eigen::Array3i count = (size / spacing_m).round().cast<int>();
   GrayArea result;
   for (int i = 0; i < count.prod(); ++i) {
-    const Eigen::Vector3d index(i % count.x(), i / count.x() % count.y(), i / count.x() / count.y());
-    result.add(sampler.at(low + spacing_m * (index.array() + 0.5).matrix()));
+    const Eigen::Array3i index(i % count.x(), i / count.x() % count.y(), i / count.x() / count.y());
+    result.add(sampler.at(low + spacing_m * (index.cast<double>() + 0.5).matrix()));
   }
   return result;
 }

@@ -18,6 +18,7 @@ struct InterferenceCase {
   /// once the lateral margin is applied.
   std::array<double, 2> invalid_share{};
   std::array<double, 2> blocked_share{};
+  double unmeasured_share = 0;  ///< of the search's answers: the nearest point lies where a pixel measured nothing
   std::vector<LabelledDeviation> methods;  ///< letter, corrected, search, with both cameras
 };
 
