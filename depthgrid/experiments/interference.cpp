@@ -1,6 +1,7 @@
 #include "depthgrid/experiments/interference.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "depthgrid/experiments/comparison_picture.hpp"
@@ -63,6 +64,73 @@ void count_pixels(const CameraImages& images, std::size_t camera, int frames, In
   result.blocked_share[camera] += share(free.image()) / frames;
 }
 
+/// What one state of the two Kinects gives, for figures and for the picture.
+struct CaseRun {
+  InterferenceCase figures;
+  std::vector<Instant> instants;
+  DepthImage shown;  ///< of the first camera, in the middle of the motion
+};
+
+/// Adds the last instant of a run.
+void count_answers(CaseRun& run, int frames) {
+  const Instant& instant = run.instants.back();
+  for (std::size_t c = 0; c < run.figures.methods.size(); ++c) {
+    for (std::size_t i = 0; i < instant.truth.size(); ++i) {
+      run.figures.methods[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
+    }
+  }
+  const auto& answers = instant.answers[kSearch];
+  const auto unmeasured = std::count_if(answers.begin(), answers.end(), [](const Proximity& answer) {
+    return answer.state == ProximityState::unmeasured;
+  });
+  run.figures.unmeasured_share +=
+      static_cast<double>(unmeasured) / (static_cast<double>(answers.size()) * static_cast<double>(frames));
+}
+
+CaseRun run_case(const Setting& setting, const simulation::Arrangement& arrangement, const Rig& rig, int frames,
+                 std::uint64_t seed, const std::function<void(int)>& done) {
+  simulation::PersonStage place;
+  place.robot_world = {0, -0.15, 0.65};
+  StagedCell stage(Motion::reach, place, seed);
+  MethodComparison comparison(stage, rig, arrangement, candidates(), noise(setting, seed));
+  CaseRun run;
+  run.figures.label = setting.label;
+  for (const Candidate& candidate : candidates()) {
+    run.figures.methods.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
+  }
+  for (int frame = 0; frame < frames; ++frame) {
+    const double time_s = stage.person().duration_s() * (frame + 0.5) / frames;
+    stage.move_to(time_s);
+    run.instants.push_back(comparison.at(stage, time_s, static_cast<std::uint64_t>(frame)));
+    const CameraImages& images = comparison.images(RobotPixels::background);
+    for (std::size_t camera = 0; camera < 2; ++camera) {
+      count_pixels(images, camera, frames, run.figures);
+    }
+    count_answers(run, frames);
+    if (frame == frames / 2) {
+      run.shown = images.depth_m(0);
+    }
+    done(frame + 1);
+  }
+  return run;
+}
+
+report::Canvas draw(const std::vector<CaseRun>& runs, const RigCamera& camera) {
+  std::vector<AnswerTile> tiles;
+  report::Plot letter{"letter: median distance of the nine points, both cameras", "time (s)", "m", false, false, {}};
+  report::Plot search{"search: the same", "time (s)", "m", false, false, {}};
+  letter.series.push_back(median_truth(runs.front().instants, DistanceMethod::kRho));
+  search.series.push_back(letter.series.front());
+  for (std::size_t s = 0; s < runs.size(); ++s) {
+    const InterferenceCase& figures = runs[s].figures;
+    tiles.push_back({std::string(kSettings[s].title) + ": " + percent(figures.invalid_share[0]) + " invalid", &camera,
+                     &runs[s].shown, nullptr, nullptr});
+    letter.series.push_back(median_answers(runs[s].instants, kLetter, figures.label));
+    search.series.push_back(median_answers(runs[s].instants, kSearch, figures.label));
+  }
+  return draw_comparison(tiles, {letter, search});
+}
+
 }  // namespace
 
 std::vector<InterferenceCase> measure_interference(const Options& options, ExperimentReport* pictures) {
@@ -70,61 +138,24 @@ std::vector<InterferenceCase> measure_interference(const Options& options, Exper
   arrangement.rig.cameras.resize(2);  // neighbours: the others do not light this space
   const Rig rig = with_width(arrangement.rig, width_or(options, 640, 320));
   const int frames = frames_or(options, 30, 8);
-  std::vector<InterferenceCase> cases;
-  std::vector<DepthImage> first_images(kSettings.size());
-  report::Plot letter_plot{
-      "letter: median distance of the nine points, both cameras", "time (s)", "m", false, false, {}};
-  report::Plot search_plot{"search: the same", "time (s)", "m", false, false, {}};
-  for (std::size_t s = 0; s < kSettings.size(); ++s) {
-    simulation::PersonStage place;
-    place.robot_world = {0, -0.15, 0.65};
-    StagedCell stage(Motion::reach, place, options.seed);
-    MethodComparison comparison(stage, rig, arrangement, candidates(), noise(kSettings[s], options.seed));
-    InterferenceCase& result = cases.emplace_back();
-    result.label = kSettings[s].label;
-    for (const Candidate& candidate : candidates()) {
-      result.methods.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
-    }
-    std::vector<Instant> instants;
-    for (int frame = 0; frame < frames; ++frame) {
-      const double time_s = stage.person().duration_s() * (frame + 0.5) / frames;
-      stage.move_to(time_s);
-      instants.push_back(comparison.at(stage, time_s, static_cast<std::uint64_t>(frame)));
-      const CameraImages& images = comparison.images(RobotPixels::background);
-      for (std::size_t camera = 0; camera < 2; ++camera) {
-        count_pixels(images, camera, frames, result);
-      }
-      for (std::size_t c = 0; c < result.methods.size(); ++c) {
-        for (std::size_t i = 0; i < instants.back().truth.size(); ++i) {
-          result.methods[c].deviation.add(instants.back().answers[c][i], instants.back().truth[i].distance_m);
-        }
-      }
-      for (const Proximity& answer : instants.back().answers[kSearch]) {
-        result.unmeasured_share += answer.state == ProximityState::unmeasured ? 1.0 / (frames * kControlPoints) : 0;
-      }
-      if (frame == frames / 2) {
-        first_images[s] = images.depth_m(0);
-      }
-      options.progress(s * static_cast<std::size_t>(frames) + static_cast<std::size_t>(frame) + 1,
+  std::vector<CaseRun> runs;
+  for (const Setting& setting : kSettings) {
+    const std::size_t before = runs.size();
+    runs.push_back(run_case(setting, arrangement, rig, frames, options.seed, [&](int done) {
+      options.progress(before * static_cast<std::size_t>(frames) + static_cast<std::size_t>(done),
                        kSettings.size() * static_cast<std::size_t>(frames));
-    }
-    if (s == 0) {
-      letter_plot.series.push_back(median_truth(instants, DistanceMethod::kRho));
-      search_plot.series.push_back(letter_plot.series.front());
-    }
-    letter_plot.series.push_back(median_answers(instants, kLetter, result.label));
-    search_plot.series.push_back(median_answers(instants, kSearch, result.label));
+    }));
   }
   if (pictures != nullptr) {
-    std::vector<AnswerTile> tiles;
-    for (std::size_t s = 0; s < kSettings.size(); ++s) {
-      tiles.push_back({std::string(kSettings[s].title) + ": " + percent(cases[s].invalid_share[0]) + " invalid",
-                       &rig.cameras.front(), &first_images[s], nullptr, nullptr});
-    }
     pictures->picture(
-        "interference.png", draw_comparison(tiles, {letter_plot, search_plot}),
+        "interference.png", draw(runs, rig.cameras.front()),
         "Above: one instant as camera 1 measures it; turquoise: no measurement; shares are means over the "
         "motion. Robot pixels are replaced by the room. Below: what the methods make of it.");
+  }
+  std::vector<InterferenceCase> cases;
+  cases.reserve(runs.size());
+  for (CaseRun& run : runs) {
+    cases.push_back(std::move(run.figures));
   }
   return cases;
 }
