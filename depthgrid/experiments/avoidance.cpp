@@ -42,9 +42,9 @@ class PathPanel {
       canvas_.line(at(x_m, kTop), at(x_m, kTop - kSide / kScale), {report::Colour{0.87, 0.87, 0.87}, 1});
       canvas_.line(at(kLeft, z_m), at(kLeft + kSide / kScale, z_m), {report::Colour{0.87, 0.87, 0.87}, 1});
       const report::CanvasPoint below = at(x_m, kTop - kSide / kScale);
-      canvas_.text({below.x_px, below.y_px + 16}, fixed(x_m, 1), 12, report::kBlack, report::Align::centre);
+      canvas_.text({below.x_px, below.y_px + 16}, fixed(x_m, 2), 12, report::kBlack, report::Align::centre);
       const report::CanvasPoint beside = at(kLeft, z_m);
-      canvas_.text({beside.x_px - 6, beside.y_px + 4}, fixed(z_m, 1), 12, report::kBlack, report::Align::right);
+      canvas_.text({beside.x_px - 6, beside.y_px + 4}, fixed(z_m, 2), 12, report::kBlack, report::Align::right);
     }
     canvas_.outline(area(), {report::kBlack, 1});
     canvas_.text({left_px_ + kSide / 2, top_px_ - 10}, name, 15, report::kBlack, report::Align::centre);
@@ -132,15 +132,16 @@ report::Canvas picture_over_time(const Comparison& comparison) {
 }
 
 ordered_json figures_of(const RunResult& run) {
-  ordered_json entry{{"smallest_distance_m", run.smallest_person_m},
-                     {"contacts", run.contacts.size()},
-                     {"in_contact_s", run.in_contact_s},
-                     {"vertices", run.vertices},
-                     {"s_per_vertex", run.task_share > 0 ? run.duration_s / run.task_share : 0},
-                     {"stopped_s", run.stopped_s},
-                     {"stopped_with_nothing_within_rho_s", run.false_stop_s},
-                     {"over_estimates", run.over_estimates},
-                     {"periods_with_person_within_rho", run.watched}};
+  ordered_json entry{
+      {"smallest_distance_m", run.smallest_person_m},
+      {"contacts", run.contacts.size()},
+      {"in_contact_s", run.in_contact_s},
+      {"vertices", run.vertices},
+      {"s_per_vertex", run.vertices > 0 ? ordered_json(run.duration_s / run.task_share) : ordered_json(nullptr)},
+      {"stopped_s", run.stopped_s},
+      {"stopped_with_nothing_within_rho_s", run.false_stop_s},
+      {"over_estimates", run.over_estimates},
+      {"periods_with_person_within_rho", run.watched}};
   for (const Contact& contact : run.contacts) {
     entry["contact_causes"].push_back(to_string(contact.cause));
   }
@@ -161,7 +162,7 @@ void report_comparison(const Comparison& comparison, const std::vector<Eigen::Ve
   for (const auto& [method, run] : comparison.runs) {
     rows.push_back({std::string(title(method)), fixed(run.smallest_person_m, 3), causes(run),
                     fixed(run.in_contact_s, 2), std::to_string(run.vertices),
-                    run.task_share > 0 ? fixed(run.duration_s / run.task_share, 3) : "-", fixed(run.stopped_s, 2),
+                    run.vertices > 0 ? fixed(run.duration_s / run.task_share, 3) : "-", fixed(run.stopped_s, 2),
                     fixed(run.false_stop_s, 2)});
     report.figures()[comparison.sensor][std::string(key(method))] = figures_of(run);
   }

@@ -150,7 +150,8 @@ class Run {
       watch_person(time_s, *person);
     }
     if (settings_.sample_every > 0 && k % settings_.sample_every == 0) {
-      RunSample sample{time_s, joints_now(), tip, person_m, loop_.report().output.repulsion_m_s, {}};
+      const Eigen::Vector3d to_nearest = loop_.answers()[0].obstacle.direction_world.value_or(Eigen::Vector3d::Zero());
+      RunSample sample{time_s, joints_now(), tip, person_m, loop_.report().output.repulsion_m_s, to_nearest, {}};
       for (const avoidance::PartAnswer& answer : loop_.answers()) {
         sample.told_m.push_back(std::min(common_.rho_m, answer.obstacle.distance_m.value_or(0)));
       }

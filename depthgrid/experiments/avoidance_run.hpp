@@ -41,6 +41,8 @@ struct RunSample {
   Eigen::Vector3d end_effector_world;
   double true_person_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d repulsion_m_s = Eigen::Vector3d::Zero();  ///< of the end effector, world frame
+  /// Unit vector from the end effector's part to the nearest obstacle as evaluated; zero where there is none.
+  Eigen::Vector3d to_nearest = Eigen::Vector3d::Zero();
   std::vector<double> told_m;  ///< one a part, the end effector first; rho where nothing is near
 };
 

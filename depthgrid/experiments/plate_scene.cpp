@@ -34,12 +34,14 @@ PlateScene plate_scene(Method method, const AvoidanceSettings& settings) {
       const Eigen::Vector3d other = on_axis(capsule, sample.end_effector_world) - sample.end_effector_world;
       way = other.norm() < way.norm() ? other : way;
     }
-    const double towards_m_s = sample.repulsion_m_s.dot(way.normalized());
+    const double to_hand_m_s = sample.repulsion_m_s.dot(way.normalized());
+    const double to_nearest_m_s = sample.repulsion_m_s.dot(sample.to_nearest);
     scene.time_s.push_back(sample.time_s);
     scene.hand_m.push_back(sample.true_person_m);
-    scene.towards_hand_m_s.push_back(towards_m_s);
+    scene.towards_nearest_m_s.push_back(to_nearest_m_s);
+    scene.fastest_towards_nearest_m_s = std::max(scene.fastest_towards_nearest_m_s, to_nearest_m_s);
     if (way.norm() - hand.capsules[0].radius_m < 0.5 * settings.rho_m) {
-      scene.fastest_towards_m_s = std::max(scene.fastest_towards_m_s, towards_m_s);
+      scene.fastest_towards_hand_m_s = std::max(scene.fastest_towards_hand_m_s, to_hand_m_s);
     }
   }
   return scene;

@@ -9,9 +9,12 @@ namespace depthgrid::experiments {
 
 struct PlateScene {
   std::vector<double> time_s;
-  std::vector<double> hand_m;            ///< true distance from the moving links to the hand
-  std::vector<double> towards_hand_m_s;  ///< part of the repulsive velocity that points from the end effector to it
-  double fastest_towards_m_s = 0;        ///< while the hand is nearer than half of rho; 0 where it never does
+  std::vector<double> hand_m;  ///< true distance from the moving links to the hand
+  /// Part of the repulsive velocity that points from the end effector to what the method holds for nearest to it.
+  std::vector<double> towards_nearest_m_s;
+  double fastest_towards_nearest_m_s = 0;  ///< 0 where it never does
+  /// The same towards the hand, while the hand is really nearer than half of rho.
+  double fastest_towards_hand_m_s = 0;
   double smallest_m = 0;
   int contacts = 0;
 };

@@ -1,0 +1,128 @@
+// The loop: what it refuses, what it does with nothing near and with nothing known, and that it does not allocate.
+#include "depthgrid/avoidance/avoidance_loop.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "avoidance/flat_wall.hpp"
+#include "depthgrid/avoidance/frame_intake.hpp"
+#include "depthgrid/avoidance/search_distances.hpp"
+#include "support/allocation_guard.hpp"
+#include "support/thrown_message.hpp"
+
+namespace depthgrid::avoidance {
+namespace {
+
+using depthgrid::test::AllocationGuard;
+using depthgrid::test::thrown_message;
+using ::testing::HasSubstr;
+
+constexpr double kPeriod = 0.002;
+
+class Loop : public ::testing::Test {
+ protected:
+  robot::RobotModel model_ = robot::kuka_lwr4();
+  robot::JointHistory history_{7, 256, 0.02, 0.01};
+  NoDistances nothing_;
+};
+
+TEST_F(Loop, RefusesSettingsThatDoNotFit) {
+  const auto refused = [&](const LoopSettings& settings) {
+    return thrown_message([&] { AvoidanceLoop(model_, history_, nothing_, settings); });
+  };
+  const LoopSettings good = test::loop_settings(model_, nine_control_points(model_));
+  EXPECT_EQ(refused(good), "");
+  LoopSettings bad = good;
+  bad.parts.clear();
+  EXPECT_THAT(refused(bad), HasSubstr("no part of the robot"));
+  bad = good;
+  bad.parts[3].link = 99;
+  EXPECT_THAT(refused(bad), HasSubstr("link 99"));
+  bad = good;
+  bad.evaluate_every = 0;
+  EXPECT_THAT(refused(bad), HasSubstr("every 0 periods"));
+}
+
+TEST_F(Loop, FollowsTheHexagonWithNothingNear) {
+  const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
+  AvoidanceLoop loop(model_, history_, nothing_, settings);
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  ASSERT_TRUE(loop.start(arm));
+  for (int k = 0; k < 3000; ++k) {
+    ASSERT_TRUE(loop.cycle(arm, k * kPeriod)) << k;
+    EXPECT_EQ(loop.report().output.repulsion_m_s.norm(), 0);
+    arm.advance();
+  }
+  // 6 s at 0.2 m an edge and 0.40 m/s, corners included.
+  EXPECT_GE(loop.task().vertices_reached(), 8);
+}
+
+TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
+  const Rig rig = test::one_camera();
+  LoopSettings settings = test::loop_settings(model_, moving_capsules(model_));
+  settings.end_effector_limits = true;
+  SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
+  AvoidanceLoop loop(model_, history_, source, settings);
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  ASSERT_TRUE(loop.start(arm));
+  (void)loop.cycle(arm, 0);
+  const Eigen::Vector3d start_world = loop.report().end_effector_world;
+  for (int k = 1; k < 200; ++k) {
+    arm.advance();
+    (void)loop.cycle(arm, k * kPeriod);
+  }
+  for (const PartAnswer& answer : loop.answers()) {
+    EXPECT_EQ(answer.obstacle.distance_m.value_or(0), 0);
+  }
+  // The law of the risk leaves 1 - f(0) of the task, and of each joint's speed.
+  const auto& repulsion = settings.controller.repulsion;
+  const double left_m = (1 - control::risk(0.0, repulsion.rho_m, repulsion.alpha)) * settings.task.speed_m_s * 0.4;
+  EXPECT_LE((loop.report().end_effector_world - start_world).norm(), left_m + 1e-9);
+  EXPECT_LT(left_m, 0.0005);
+}
+
+TEST_F(Loop, DoesNotAllocateWithTheSearch) {
+  DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
+  const Rig rig = test::one_camera();
+  LoopSettings settings = test::loop_settings(model_, moving_capsules(model_));
+  settings.end_effector_limits = true;
+  SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
+  AvoidanceLoop loop(model_, history_, source, settings);
+  FrameIntake intake(rig, model_, history_, {});
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  ASSERT_TRUE(loop.start(arm));
+  const std::vector<std::uint16_t> wall(64UL * 48UL, 3500);
+  const DepthView view = depth_view(wall, 64, 48, 0.001);
+  bool working = true;
+  for (int k = 0; k < 60; ++k) {
+    const AllocationGuard guard;
+    working = loop.cycle(arm, k * kPeriod) && working;
+    if (k % 10 == 0) {
+      working = source.take(intake.frames({&view, 1}, k * kPeriod)) && working;
+    }
+    arm.advance();
+    ASSERT_EQ(guard.allocations(), 0) << "cycle " << k;
+  }
+  EXPECT_TRUE(working);
+  EXPECT_GT(source.answered(), 0);
+}
+
+TEST(RobotParts, BeginWithTheFlangeAndLeaveTheBaseOut) {
+  const robot::RobotModel model = robot::kuka_lwr4();
+  const auto points = nine_control_points(model);
+  ASSERT_EQ(points.size(), 9U);
+  EXPECT_EQ(points.front().link, model.link_index("lwr_7_link"));
+  for (const RobotPart& point : points) {
+    EXPECT_EQ(point.radius_m, 0);
+    EXPECT_EQ(point.a_link, point.b_link);
+  }
+  const auto capsules = moving_capsules(model);
+  ASSERT_EQ(capsules.size(), 6U);
+  EXPECT_EQ(capsules.front().link, model.link_index("lwr_7_link"));
+  EXPECT_EQ(capsules.back().link, model.link_index("lwr_2_link"));
+  EXPECT_EQ(moving_capsules(model, 1).size(), 7U);
+  EXPECT_THAT(thrown_message([&] { (void)moving_capsules(model, 9); }), HasSubstr("moved by 9 joints"));
+}
+
+}  // namespace
+}  // namespace depthgrid::avoidance

@@ -1,0 +1,60 @@
+// One camera before a wall, and the LWR 4+ somewhere else: what the loop needs, without a simulated cell.
+#pragma once
+
+#include <numbers>
+#include <vector>
+
+#include "depthgrid/avoidance/avoidance_loop.hpp"
+#include "depthgrid/control/simulated_arm.hpp"
+#include "depthgrid/core/sensor_models.hpp"
+#include "depthgrid/robot/kuka_lwr4.hpp"
+#include "depthgrid/search/settings.hpp"
+
+namespace depthgrid::avoidance::test {
+
+/// Looks along +y at the arm's work place from y = -2.
+inline Rig one_camera() {
+  Rig rig{.name = "one", .cameras = std::vector<RigCamera>(1), .T_floor_world = {}};
+  rig.cameras[0].id = "front";
+  rig.cameras[0].intrinsics = from_opencv(64, 48, 52.5, 52.5, 31.5, 23.5);
+  rig.cameras[0].T_world_camera = look_at({0, -2, 0.6}, {0, 0, 0.6});
+  rig.cameras[0].margins = sensor_margins(sensor_model("ideal"), rig.cameras[0].intrinsics, 0.001);
+  return rig;
+}
+
+inline search::Settings search_settings(const Rig& rig) {
+  search::Settings settings;
+  settings.space = search::BoxSpace{{-1.5, -1.5, -0.5}, {1.5, 1.5, 1.5}};
+  settings.policies = {.unobserved = search::Policy::obstacle,
+                       .outside = search::Policy::obstacle,
+                       .robot_pockets = search::Policy::obstacle};
+  settings.margins = camera_margins(rig);
+  settings.v_max_m_s = 2;
+  settings.rho_m = 0.5;
+  return settings;
+}
+
+inline control::JointVector bent() {
+  control::JointVector q(7);
+  q << std::numbers::pi / 2, 0.1, 0.0, -1.55, 0.0, 1.2, 0.0;
+  return q;
+}
+
+inline LoopSettings loop_settings(const robot::RobotModel& model, std::vector<RobotPart> parts) {
+  LoopSettings settings;
+  control::JointLimits& limits = settings.controller.limits;
+  limits.highest_rad = control::JointVector::Constant(7, 2.9);
+  limits.lowest_rad = -limits.highest_rad;
+  limits.velocity_rad_s = control::JointVector::Constant(7, 1.9);
+  limits.acceleration_rad_s2 = control::JointVector::Constant(7, 5.2);
+  settings.controller.posture_rad = bent();
+  settings.parts = std::move(parts);
+  std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
+  const control::JointVector q = bent();
+  (void)model.link_poses({q.data(), 7}, Pose::Identity(), T_world_link);
+  settings.task.vertices_world = control::vertical_hexagon(T_world_link[model.link_index("lwr_7_link")].translation(),
+                                                           0.2, Eigen::Vector3d::UnitY());
+  return settings;
+}
+
+}  // namespace depthgrid::avoidance::test
