@@ -194,8 +194,8 @@ AvoidanceMotion carrying_person(const Rig& rig, double duration_s, std::uint64_t
 
 void run_avoidance_experiment(const Options& options, ExperimentReport& report) {
   const robot::RobotModel model = robot::kuka_lwr4();
-  const double duration_s = frames_or(options, 480, 240) / kFrameRate;
-  const int width_px = width_or(options, 640, 160);
+  const double duration_s = frames_or(options, 360, 240) / kFrameRate;
+  const int width_px = width_or(options, 320, 160);
   std::vector<Comparison> comparisons(2);
   comparisons[0].sensor = "ideal";
   comparisons[1].sensor = "kinect_v1";
