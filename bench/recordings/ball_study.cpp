@@ -10,7 +10,7 @@ namespace depthgrid::bench {
 
 namespace {
 
-constexpr double kRho_m = 0.5;
+constexpr double kBallRho_m = 0.5;
 constexpr std::array<double, 3> kRadii_m = {0.30, 0.40, 0.60};
 
 /// Inside the principal camera's pyramid between the ends of the grid.
@@ -74,7 +74,7 @@ bool sees_ball(const RigCamera& camera, const Frame& frame, const Eigen::Vector3
 
 std::vector<Setting> ball_settings() {
   grid::EvaluationSettings base;
-  base.rho_m = kRho_m;
+  base.rho_m = kBallRho_m;
   base.window = grid::Window::region_of_surveillance;
   std::vector<Setting> settings(4, {"", base, 1});
   settings[0].name = "letter";

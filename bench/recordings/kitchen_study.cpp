@@ -18,8 +18,8 @@ namespace depthgrid::bench {
 namespace {
 
 constexpr double kTableTop_m = 0.73;
-constexpr double kTolerance_m = 0.05;
-constexpr double kRho_m = 0.5;
+constexpr double kTableTolerance_m = 0.05;
+constexpr double kKitchenRho_m = 0.5;
 
 std::vector<Eigen::Vector3d> points_over_table() {
   std::vector<Eigen::Vector3d> points;
@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> points_over_table() {
 
 grid::EvaluationSettings settings_of(int which) {
   grid::EvaluationSettings settings;
-  settings.rho_m = kRho_m;
+  settings.rho_m = kKitchenRho_m;
   settings.variant = which == 0 ? grid::Variant::letter : grid::Variant::corrected;
   if (which == 2) {
     settings.sensor = sensor_model("kinect_v1").margin;
@@ -82,7 +82,7 @@ std::string kitchen_tables() {
           row.measured += answer.state == ProximityState::measured ? 1 : 0;
           row.nothing += answer.state == ProximityState::beyond_rho ? 1 : 0;
           row.distances_m.push_back(answer.distance_m);
-          row.above += answer.distance_m > p_floor.z() - kTableTop_m + kTolerance_m ? 1 : 0;
+          row.above += answer.distance_m > p_floor.z() - kTableTop_m + kTableTolerance_m ? 1 : 0;
         }
         row.shadow = row.answers - row.measured - row.nothing;
       }

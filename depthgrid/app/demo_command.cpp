@@ -69,12 +69,14 @@ std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const 
     (void)store.update(k, frames[k]);
   }
   std::vector<search::Primitive> points;
+  points.reserve(demo.control_points_world.size());
   for (const Eigen::Vector3d& p_world : demo.control_points_world) {
     points.push_back(search::point(p_world));
   }
   std::vector<search::Answer> found(points.size());
   search::Search().distances(store.snapshot(), points, found);
   std::vector<Proximity> answers;
+  answers.reserve(found.size());
   for (const search::Answer& answer : found) {
     answers.push_back(answer.nearest);
   }

@@ -14,7 +14,7 @@ constexpr std::size_t kSliceCount = 40;
 constexpr double kFarthest_m = kSlice_m * kSliceCount;
 constexpr double kEdge = 0.03;
 constexpr std::int64_t kFewestResiduals = 1000;
-constexpr double kCoveredShare = 0.95;
+constexpr double kCoveredNoise = 0.95;
 
 /// Noise of one pixel that the residual of z against its two neighbours shows; negative: not usable.
 double residual_m(double z, double before, double after) {
@@ -85,7 +85,7 @@ SensorMargin DepthNoise::suggested_margin() const {
   for (std::size_t slice = 0; slice < slices_.size(); ++slice) {
     if (slices_[slice].count() >= kFewestResiduals) {
       const double middle_m = (static_cast<double>(slice) + 0.5) * kSlice_m;
-      points.emplace_back(middle_m * middle_m, slices_[slice].quantile_m(kCoveredShare));
+      points.emplace_back(middle_m * middle_m, slices_[slice].quantile_m(kCoveredNoise));
     }
   }
   const auto [constant_m, quadratic_per_m] = line_above(points);

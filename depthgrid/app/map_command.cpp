@@ -70,7 +70,7 @@ Rig chosen_cameras(const BuildOptions& options) {
   return rig;
 }
 
-void say(const std::string& line) {
+void print_line(const std::string& line) {
   OutputFile output("-");
   output.write(line + "\n");
   output.commit();
@@ -98,7 +98,7 @@ void build(const BuildOptions& options) {
   settings.memory_limit_bytes =
       options.memory_gib ? static_cast<std::uint64_t>(*options.memory_gib * kGiB) : grid::available_memory_bytes();
   const grid::MapMemory memory = grid::estimate_map_memory(depth_grid, secondaries, storage);
-  say(storage_text(storage) + " for " + std::to_string(secondaries.size()) +
+  print_line(storage_text(storage) + " for " + std::to_string(secondaries.size()) +
       (secondaries.size() == 1 ? " secondary camera needs " : " secondary cameras needs ") +
       (memory.safety_factor > 1 ? "about " : "") + size_text(memory.bytes) + " of memory" +
       (memory.safety_factor > 1 ? " (from a sample, times " + exact_text(memory.safety_factor) + ")" : "") + "; " +
@@ -117,7 +117,7 @@ void build(const BuildOptions& options) {
   line.reset();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   grid::save_map(map, options.output);
-  say(options.output + ": " + size_text(std::filesystem::file_size(options.output)) + ", built in " +
+  print_line(options.output + ": " + size_text(std::filesystem::file_size(options.output)) + ", built in " +
       duration_text(seconds));
 }
 

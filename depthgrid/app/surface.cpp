@@ -8,7 +8,7 @@ namespace depthgrid::app {
 
 namespace {
 
-constexpr int kReach_px = 3;
+constexpr int kNeighbour_px = 3;
 constexpr float kLargestJump_m = 0.2F;
 
 Eigen::Vector3f normal(const Surface& surface, int u, int v) {
@@ -17,8 +17,8 @@ Eigen::Vector3f normal(const Surface& surface, int u, int v) {
         .points[static_cast<std::size_t>(y) * static_cast<std::size_t>(surface.width_px) + static_cast<std::size_t>(x)];
   };
   const Eigen::Vector3f& centre = at(u, v);
-  const std::array<const Eigen::Vector3f*, 4> around = {&at(u - kReach_px, v), &at(u + kReach_px, v),
-                                                        &at(u, v - kReach_px), &at(u, v + kReach_px)};
+  const std::array<const Eigen::Vector3f*, 4> around = {&at(u - kNeighbour_px, v), &at(u + kNeighbour_px, v),
+                                                        &at(u, v - kNeighbour_px), &at(u, v + kNeighbour_px)};
   for (const auto* point : around) {
     if (!(point->z() > 0.0F) || std::abs(point->z() - centre.z()) >= kLargestJump_m) {
       return Eigen::Vector3f::Zero();
@@ -46,8 +46,8 @@ void make_surface(const PinholeCamera& camera, const DepthImage& depth, Surface&
           deproject(camera, {u + 0.5, v + 0.5, static_cast<double>(depth.at(u, v))}).cast<float>();
     }
   }
-  for (int v = kReach_px; v < depth.height_px() - kReach_px; ++v) {
-    for (int u = kReach_px; u < depth.width_px() - kReach_px; ++u) {
+  for (int v = kNeighbour_px; v < depth.height_px() - kNeighbour_px; ++v) {
+    for (int u = kNeighbour_px; u < depth.width_px() - kNeighbour_px; ++u) {
       if (depth.at(u, v) > 0.0F) {
         surface.normals[depth.index(u, v)] = normal(surface, u, v);
       }

@@ -12,7 +12,7 @@ namespace {
 /// Squared share of a direction that the joints left must still have.
 constexpr double kRankLost = 1e-6;
 /// A velocity that leaves the box by less counts as inside.
-constexpr double kHolds = 1e-11;
+constexpr double kHeld = 1e-11;
 
 using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostJoints, kMostJoints>;
 
@@ -84,8 +84,8 @@ class Loop {
   }
 
   [[nodiscard]] bool lies_inside(const JointVector& velocity) const noexcept {
-    return ((velocity - box_.lower_rad_s).array() >= -kHolds).all() &&
-           ((box_.upper_rad_s - velocity).array() >= -kHolds).all();
+    return ((velocity - box_.lower_rad_s).array() >= -kHeld).all() &&
+           ((box_.upper_rad_s - velocity).array() >= -kHeld).all();
   }
 
   /// The largest s in [0, 1] that keeps the joints that are not saturated inside, and the joint that limits it; s = 0

@@ -18,7 +18,8 @@ namespace {
 using simulation::Motion;
 
 constexpr int kMostCameras = 8;
-constexpr std::array kMethods{Method::letter_hybrid, Method::letter, Method::corrected, Method::search};
+constexpr std::array kTimedMethods{EvaluationMethod::letter_hybrid, EvaluationMethod::letter,
+                                   EvaluationMethod::corrected, EvaluationMethod::search};
 /// Timed evaluations in every frame: more of those that are over sooner.
 constexpr std::array kRepetitions{3, 3, 1, 20};
 constexpr double kSpacing = 0.1;  ///< of the gray area's samples, metres
@@ -44,7 +45,7 @@ struct Setup {
       : arrangement(simulation::arrangement(cameras, "ideal")),
         images(with_width(arrangement.rig, width_px), stage, RobotPixels::behind_unknown, {}) {
     result.cameras = cameras;
-    for (const Method method : kMethods) {
+    for (const EvaluationMethod method : kTimedMethods) {
       methods.emplace_back(method, images.rig(), arrangement);
       result.methods.push_back({std::string(to_string(method)), 0, 0, Deviation(DistanceMethod::kRho), 0, 0});
     }
@@ -168,7 +169,7 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
     for (Setup& setup : setups) {  // all of them in every frame: what slows the machine down slows them all
       setup.images.take(stage, static_cast<std::uint64_t>(frame));
       setup.result.gray.add(gray_area(stage, setup.images, setup.arrangement, kSpacing));
-      for (std::size_t method = 0; method < kMethods.size(); ++method) {
+      for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
         ask(setup, method, stage, truth, engine);
       }
       options.progress(static_cast<std::size_t>(frame) * kMostCameras + static_cast<std::size_t>(setup.result.cameras),
@@ -177,7 +178,7 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
   }
   std::vector<CameraCount> counts;
   for (Setup& setup : setups) {
-    for (std::size_t method = 0; method < kMethods.size(); ++method) {
+    for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
       setup.result.methods[method].evaluation_s = quantile(std::move(setup.evaluations_s[method]), 0.5);
       setup.result.methods[method].update_s = quantile(std::move(setup.updates_s[method]), 0.5);
     }

@@ -9,15 +9,15 @@
 
 namespace depthgrid::experiments {
 
-std::string_view to_string(Method method) noexcept {
+std::string_view to_string(EvaluationMethod method) noexcept {
   switch (method) {
-    case Method::letter:
+    case EvaluationMethod::letter:
       return "letter";
-    case Method::letter_hybrid:
+    case EvaluationMethod::letter_hybrid:
       return "letter, hybrid";
-    case Method::corrected:
+    case EvaluationMethod::corrected:
       return "corrected";
-    case Method::search:
+    case EvaluationMethod::search:
       return "search";
   }
   return "";
@@ -49,10 +49,10 @@ SensorMargin largest_margin(const Rig& rig) {
   return largest;
 }
 
-grid::EvaluationSettings grid_settings(Method method, const Rig& rig) {
+grid::EvaluationSettings grid_settings(EvaluationMethod method, const Rig& rig) {
   grid::EvaluationSettings settings;
-  settings.variant = method == Method::corrected ? grid::Variant::corrected : grid::Variant::letter;
-  settings.collect = method == Method::letter_hybrid ? grid::Collect::hybrid : grid::Collect::minimum;
+  settings.variant = method == EvaluationMethod::corrected ? grid::Variant::corrected : grid::Variant::letter;
+  settings.collect = method == EvaluationMethod::letter_hybrid ? grid::Collect::hybrid : grid::Collect::minimum;
   settings.rho_m = DistanceMethod::kRho;
   settings.sensor = largest_margin(rig);
   return settings;
@@ -77,7 +77,7 @@ search::Settings search_settings(const Rig& rig, const simulation::Arrangement& 
 
 class DistanceMethod::GridMethod final : public Evaluator {
  public:
-  GridMethod(Method method, const Rig& rig, const simulation::Arrangement& arrangement)
+  GridMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement)
       : evaluator_(rig, 0, cells(arrangement), grid_settings(method, rig)) {}
 
   bool update(std::span<const Frame> frames) override { return evaluator_.update(frames); }
@@ -127,8 +127,8 @@ class DistanceMethod::SearchMethod final : public Evaluator {
   std::vector<search::Answer> found_;
 };
 
-DistanceMethod::DistanceMethod(Method method, const Rig& rig, const simulation::Arrangement& arrangement) {
-  if (method == Method::search) {
+DistanceMethod::DistanceMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement) {
+  if (method == EvaluationMethod::search) {
     evaluator_ = std::make_unique<SearchMethod>(rig, arrangement);
   } else {
     evaluator_ = std::make_unique<GridMethod>(method, rig, arrangement);

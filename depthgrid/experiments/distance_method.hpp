@@ -14,13 +14,13 @@
 
 namespace depthgrid::experiments {
 
-enum class Method : std::uint8_t {
+enum class EvaluationMethod : std::uint8_t {
   letter,         ///< as printed, minimum distance only
   letter_hybrid,  ///< as printed, with the hybrid vector of equation (11)
   corrected,      ///< the letter's grid with its errors mended, minimum distance only
   search,         ///< the sound search, resolution 5 mm
 };
-[[nodiscard]] std::string_view to_string(Method method) noexcept;
+[[nodiscard]] std::string_view to_string(EvaluationMethod method) noexcept;
 
 /// All of them look into the letter's space of interest, what the principal camera (the first) sees between d_min and
 /// d_max; space outside is ignored, space inside that no camera has seen free is an obstacle. Margins are those of the
@@ -30,7 +30,7 @@ class DistanceMethod {
   static constexpr double kRho = 0.4;  ///< metres
 
   /// `arrangement` says where the space begins and ends. Throws Error when rig or margins are invalid.
-  DistanceMethod(Method method, const Rig& rig, const simulation::Arrangement& arrangement);
+  DistanceMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement);
   ~DistanceMethod();
   DistanceMethod(DistanceMethod&&) noexcept;
   DistanceMethod& operator=(DistanceMethod&&) noexcept;

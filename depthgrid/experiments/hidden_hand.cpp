@@ -18,21 +18,21 @@ using simulation::Motion;
 
 constexpr std::size_t kPointBeforeHand = 4;  ///< the control point behind which the hand comes, in the arm's middle
 
-const std::vector<Candidate>& candidates() {
+const std::vector<Candidate>& hand_candidates() {
   constexpr auto kBackground = RobotPixels::background;
   const std::vector<std::size_t> one{kFirstCamera};
   const std::vector<std::size_t> two{kFirstCamera, kOppositeCamera};
   static const std::vector<Candidate> all{
-      {"letter, 1 camera, robot = background", Method::letter, one, kBackground},
-      {"letter, 2 cameras, robot = background", Method::letter, two, kBackground},
-      {"search, 1 camera, robot = background", Method::search, one, kBackground},
-      {"search, 2 cameras, robot = background", Method::search, two, kBackground},
-      {"letter, 1 camera", Method::letter, one},
-      {"corrected, 1 camera", Method::corrected, one},
-      {"search, 1 camera", Method::search, one},
-      {"letter, 2 cameras", Method::letter, two},
-      {"corrected, 2 cameras", Method::corrected, two},
-      {"search, 2 cameras", Method::search, two},
+      {"letter, 1 camera, robot = background", EvaluationMethod::letter, one, kBackground},
+      {"letter, 2 cameras, robot = background", EvaluationMethod::letter, two, kBackground},
+      {"search, 1 camera, robot = background", EvaluationMethod::search, one, kBackground},
+      {"search, 2 cameras, robot = background", EvaluationMethod::search, two, kBackground},
+      {"letter, 1 camera", EvaluationMethod::letter, one},
+      {"corrected, 1 camera", EvaluationMethod::corrected, one},
+      {"search, 1 camera", EvaluationMethod::search, one},
+      {"letter, 2 cameras", EvaluationMethod::letter, two},
+      {"corrected, 2 cameras", EvaluationMethod::corrected, two},
+      {"search, 2 cameras", EvaluationMethod::search, two},
   };
   return all;
 }
@@ -91,10 +91,10 @@ HiddenHandFigures measure_hidden_hand(const Options& options, ExperimentReport* 
   const Eigen::Vector3d before_hand_world = ArmAtWork().points_world()[kPointBeforeHand];
   StagedCell stage(Motion::hand_behind_robot,
                    stage_behind(before_hand_world, rig.cameras.front().T_world_camera.translation()), options.seed);
-  MethodComparison comparison(stage, rig, arrangement, candidates(), {});
+  MethodComparison comparison(stage, rig, arrangement, hand_candidates(), {});
   HiddenHandFigures figures;
   figures.person_to_arm_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : candidates()) {
+  for (const Candidate& candidate : hand_candidates()) {
     figures.hand_near.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
     figures.otherwise.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
   }
@@ -107,7 +107,7 @@ HiddenHandFigures measure_hidden_hand(const Options& options, ExperimentReport* 
     const Instant& instant = instants.back();
     figures.person_to_arm_m = std::min(figures.person_to_arm_m, instant.person_to_arm_m);
     auto& rows = instant.person_to_arm_m < kHandNear ? figures.hand_near : figures.otherwise;
-    for (std::size_t c = 0; c < candidates().size(); ++c) {
+    for (std::size_t c = 0; c < hand_candidates().size(); ++c) {
       for (std::size_t i = 0; i < instant.truth.size(); ++i) {
         rows[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
       }

@@ -16,16 +16,16 @@ namespace {
 using simulation::Motion;
 
 constexpr const char* kSensor = "kinect_v1";
-// Places in candidates().
+// Places in interference_candidates().
 constexpr std::size_t kLetter = 0;
-constexpr std::size_t kSearch = 2;
+constexpr std::size_t kSearchCandidate = 2;
 
 /// The robot's pixels count as background, so that its own shadows do not cover what the noise does.
-std::vector<Candidate> candidates() {
+std::vector<Candidate> interference_candidates() {
   constexpr auto kBackground = RobotPixels::background;
-  return {{"letter", Method::letter, {0, 1}, kBackground},
-          {"corrected", Method::corrected, {0, 1}, kBackground},
-          {"search", Method::search, {0, 1}, kBackground}};
+  return {{"letter", EvaluationMethod::letter, {0, 1}, kBackground},
+          {"corrected", EvaluationMethod::corrected, {0, 1}, kBackground},
+          {"search", EvaluationMethod::search, {0, 1}, kBackground}};
 }
 
 struct Setting {
@@ -79,7 +79,7 @@ void count_answers(CaseRun& run, int frames) {
       run.figures.methods[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
     }
   }
-  const auto& answers = instant.answers[kSearch];
+  const auto& answers = instant.answers[kSearchCandidate];
   const auto unmeasured = std::count_if(answers.begin(), answers.end(), [](const Proximity& answer) {
     return answer.state == ProximityState::unmeasured;
   });
@@ -92,10 +92,10 @@ CaseRun run_case(const Setting& setting, const simulation::Arrangement& arrangem
   simulation::PersonStage place;
   place.robot_world = {0, -0.15, 0.65};
   StagedCell stage(Motion::reach, place, seed);
-  MethodComparison comparison(stage, rig, arrangement, candidates(), noise(setting, seed));
+  MethodComparison comparison(stage, rig, arrangement, interference_candidates(), noise(setting, seed));
   CaseRun run;
   run.figures.label = setting.label;
-  for (const Candidate& candidate : candidates()) {
+  for (const Candidate& candidate : interference_candidates()) {
     run.figures.methods.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
   }
   for (int frame = 0; frame < frames; ++frame) {
@@ -126,7 +126,7 @@ report::Canvas draw(const std::vector<CaseRun>& runs, const RigCamera& camera) {
     tiles.push_back({std::string(kSettings[s].title) + ": " + percent(figures.invalid_share[0]) + " invalid", &camera,
                      &runs[s].shown, nullptr, nullptr});
     letter.series.push_back(median_answers(runs[s].instants, kLetter, figures.label));
-    search.series.push_back(median_answers(runs[s].instants, kSearch, figures.label));
+    search.series.push_back(median_answers(runs[s].instants, kSearchCandidate, figures.label));
   }
   return draw_comparison(tiles, {letter, search});
 }
@@ -182,7 +182,7 @@ void run_interference(const Options& options, ExperimentReport& report) {
     return text + " mm";
   };
   report.headline("Half of the letter's distances then are more than " + medians(kLetter) +
-                  " too near, half of the search's more than " + medians(kSearch) + ".");
+                  " too near, half of the search's more than " + medians(kSearchCandidate) + ".");
   std::vector<std::vector<std::string>> rows;
   for (const InterferenceCase& c : cases) {
     rows.push_back({c.label, percent(c.invalid_share[0]), percent(c.invalid_share[1]), percent(c.blocked_share[0]),

@@ -20,7 +20,7 @@ namespace depthgrid::experiments {
 /// A method with some of the rig's cameras, the principal one first.
 struct Candidate {
   std::string label;  ///< in tables and figures; distinct
-  Method method = Method::search;
+  EvaluationMethod method = EvaluationMethod::search;
   std::vector<std::size_t> cameras{0};
   RobotPixels robot = RobotPixels::behind_unknown;
 };

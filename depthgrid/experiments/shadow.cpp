@@ -16,27 +16,27 @@ namespace {
 
 using simulation::Motion;
 
-const std::vector<Candidate>& candidates() {
+const std::vector<Candidate>& shadow_candidates() {
   constexpr auto kBackground = RobotPixels::background;
   const std::vector<std::size_t> one{kFirstCamera};
   const std::vector<std::size_t> two{kFirstCamera, kOppositeCamera};
   const std::vector<std::size_t> two_aside{kFirstCamera, kAsideCamera};
   const std::vector<std::size_t> three{kFirstCamera, kOppositeCamera, kAsideCamera};
   static const std::vector<Candidate> all{
-      {"letter, 1 camera, robot = background", Method::letter, one, kBackground},
-      {"letter, 2 cameras, robot = background", Method::letter, two, kBackground},
-      {"corrected, 1 camera, robot = background", Method::corrected, one, kBackground},
-      {"corrected, 2 cameras, robot = background", Method::corrected, two, kBackground},
-      {"search, 1 camera, robot = background", Method::search, one, kBackground},
-      {"search, 2 cameras, robot = background", Method::search, two, kBackground},
-      {"letter, 1 camera", Method::letter, one},
-      {"letter, 2 cameras", Method::letter, two},
-      {"search, 1 camera", Method::search, one},
-      {"search, 2 cameras", Method::search, two},
-      {"search, 2 cameras, second aside", Method::search, two_aside},
-      {"letter, 3 cameras", Method::letter, three},
-      {"corrected, 3 cameras", Method::corrected, three},
-      {"search, 3 cameras", Method::search, three},
+      {"letter, 1 camera, robot = background", EvaluationMethod::letter, one, kBackground},
+      {"letter, 2 cameras, robot = background", EvaluationMethod::letter, two, kBackground},
+      {"corrected, 1 camera, robot = background", EvaluationMethod::corrected, one, kBackground},
+      {"corrected, 2 cameras, robot = background", EvaluationMethod::corrected, two, kBackground},
+      {"search, 1 camera, robot = background", EvaluationMethod::search, one, kBackground},
+      {"search, 2 cameras, robot = background", EvaluationMethod::search, two, kBackground},
+      {"letter, 1 camera", EvaluationMethod::letter, one},
+      {"letter, 2 cameras", EvaluationMethod::letter, two},
+      {"search, 1 camera", EvaluationMethod::search, one},
+      {"search, 2 cameras", EvaluationMethod::search, two},
+      {"search, 2 cameras, second aside", EvaluationMethod::search, two_aside},
+      {"letter, 3 cameras", EvaluationMethod::letter, three},
+      {"corrected, 3 cameras", EvaluationMethod::corrected, three},
+      {"search, 3 cameras", EvaluationMethod::search, three},
   };
   return all;
 }
@@ -126,10 +126,10 @@ ShadowFigures measure_shadow(const Options& options, ExperimentReport* pictures)
   const simulation::Arrangement arrangement = two_views("ideal");
   const Rig rig = with_width(arrangement.rig, width_or(options, 640, 320));
   StagedCell stage(Motion::arm_between, stage_around_the_wrist(), options.seed);
-  MethodComparison comparison(stage, rig, arrangement, candidates(), {});
+  MethodComparison comparison(stage, rig, arrangement, shadow_candidates(), {});
   ShadowFigures figures;
   figures.person_to_arm_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : candidates()) {
+  for (const Candidate& candidate : shadow_candidates()) {
     figures.in_shadow.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
     figures.otherwise.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
   }
@@ -143,7 +143,7 @@ ShadowFigures measure_shadow(const Options& options, ExperimentReport* pictures)
     const Instant& instant = instants.back();
     figures.person_to_arm_m = std::min(figures.person_to_arm_m, instant.person_to_arm_m);
     auto& rows = instant.points_behind_person > 0 ? figures.in_shadow : figures.otherwise;
-    for (std::size_t c = 0; c < candidates().size(); ++c) {
+    for (std::size_t c = 0; c < shadow_candidates().size(); ++c) {
       for (std::size_t i = 0; i < instant.truth.size(); ++i) {
         rows[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
       }

@@ -25,7 +25,7 @@ struct Columns {
   [[nodiscard]] std::size_t count() const noexcept { return of_point + (frame ? 1 : 0); }
 };
 
-struct Value {
+struct CsvValue {
   std::string_view text;
   std::size_t column = 1;  ///< of its first character, from 1
 };
@@ -35,14 +35,14 @@ struct Place {
   std::size_t line;  ///< from 1; 0: the text is a single value of the command line
 };
 
-[[noreturn]] void fail_at(const Place& place, const Value& value, const std::string& rule) {
+[[noreturn]] void fail_at(const Place& place, const CsvValue& value, const std::string& rule) {
   const std::string line = place.line > 0 ? "line " + std::to_string(place.line) + ", " : std::string();
   fail(place.name, ": ", line, "column ", value.column, ": ", rule);
 }
 
 /// Values of one line between the commas, without the spaces around them.
-std::vector<Value> split(std::string_view line) {
-  std::vector<Value> values;
+std::vector<CsvValue> split(std::string_view line) {
+  std::vector<CsvValue> values;
   for (std::size_t begin = 0;;) {
     const std::size_t comma = std::min(line.find(',', begin), line.size());
     const std::string_view text = trimmed(line.substr(begin, comma - begin));
@@ -60,7 +60,7 @@ bool equals_ignoring_case(std::string_view text, std::string_view lower) {
 }
 
 /// The columns that a header names; nothing when the row is no header.
-std::optional<Columns> header_columns(const std::vector<Value>& values) {
+std::optional<Columns> header_columns(const std::vector<CsvValue>& values) {
   constexpr std::array<std::string_view, 1 + kCapsule> kNames = {"frame",  "id", "x",  "y", "z",
                                                                  "radius", "x2", "y2", "z2"};
   for (const bool frame : {false, true}) {
@@ -69,7 +69,7 @@ std::optional<Columns> header_columns(const std::vector<Value>& values) {
       const auto* first = kNames.begin() + (frame ? 0 : 1);
       if (std::equal(
               values.begin(), values.end(), first, first + columns.count(),
-              [](const Value& value, std::string_view name) { return equals_ignoring_case(value.text, name); })) {
+              [](const CsvValue& value, std::string_view name) { return equals_ignoring_case(value.text, name); })) {
         return columns;
       }
     }
@@ -77,7 +77,7 @@ std::optional<Columns> header_columns(const std::vector<Value>& values) {
   return std::nullopt;
 }
 
-Columns columns_without_header(const Place& place, const std::vector<Value>& values) {
+Columns columns_without_header(const Place& place, const std::vector<CsvValue>& values) {
   if (values.size() != kPoint && values.size() != kPoint + 1) {
     fail_at(place, values[0],
             std::to_string(values.size()) +
@@ -86,7 +86,7 @@ Columns columns_without_header(const Place& place, const std::vector<Value>& val
   return {values.size() != kPoint, kPoint};
 }
 
-double length_m(const Place& place, const Value& value, const char* name) {
+double length_m(const Place& place, const CsvValue& value, const char* name) {
   const auto number = parse_number<double>(value.text);
   if (!number) {
     fail_at(place, value, std::string(name) + " is '" + std::string(value.text) + "', must be a number in metres");
@@ -97,12 +97,12 @@ double length_m(const Place& place, const Value& value, const char* name) {
   return *number;
 }
 
-Eigen::Vector3d position_m(const Place& place, std::span<const Value> xyz) {
+Eigen::Vector3d position_m(const Place& place, std::span<const CsvValue> xyz) {
   return {length_m(place, xyz[0], "x"), length_m(place, xyz[1], "y"), length_m(place, xyz[2], "z")};
 }
 
 /// `values`: x,y,z and, where the columns are there, radius and x2,y2,z2.
-ControlPoint point_of(const std::string& id, const Place& place, std::span<const Value> values) {
+ControlPoint point_of(const std::string& id, const Place& place, std::span<const CsvValue> values) {
   ControlPoint point{id, position_m(place, values.first<3>()), 0, std::nullopt};
   if (values.size() >= kSphere - 1 && !values[3].text.empty()) {
     point.radius_m = length_m(place, values[3], "radius");
@@ -111,8 +111,8 @@ ControlPoint point_of(const std::string& id, const Place& place, std::span<const
     }
   }
   if (values.size() == kCapsule - 1) {
-    const std::span<const Value> end = values.last<3>();
-    if (!std::all_of(end.begin(), end.end(), [](const Value& value) { return value.text.empty(); })) {
+    const std::span<const CsvValue> end = values.last<3>();
+    if (!std::all_of(end.begin(), end.end(), [](const CsvValue& value) { return value.text.empty(); })) {
       point.end_m.emplace(length_m(place, end[0], "x2"), length_m(place, end[1], "y2"), length_m(place, end[2], "z2"));
     }
   }
@@ -120,7 +120,7 @@ ControlPoint point_of(const std::string& id, const Place& place, std::span<const
 }
 
 std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, const Columns& columns,
-                                     const std::vector<Value>& values) {
+                                     const std::vector<CsvValue>& values) {
   if (!columns.frame) {
     return points.fixed;
   }
@@ -131,9 +131,9 @@ std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, 
   return points.of_frame[*frame];
 }
 
-void add_point(ControlPoints& points, const Place& place, const Columns& columns, const std::vector<Value>& values) {
-  const std::span<const Value> of_point = std::span(values).last(columns.of_point);
-  const Value& id = of_point[0];
+void add_point(ControlPoints& points, const Place& place, const Columns& columns, const std::vector<CsvValue>& values) {
+  const std::span<const CsvValue> of_point = std::span(values).last(columns.of_point);
+  const CsvValue& id = of_point[0];
   std::vector<ControlPoint>& list = points_of(points, place, columns, values);
   if (id.text.empty()) {
     fail_at(place, id, "the id is empty, every control point needs one");
@@ -163,7 +163,7 @@ ControlPoints parse_control_points(std::string_view text, const std::string& nam
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    const std::vector<Value> values = split(line.substr(0, line.find('#')));
+    const std::vector<CsvValue> values = split(line.substr(0, line.find('#')));
     if (values.size() == 1 && values[0].text.empty()) {
       continue;
     }
@@ -195,7 +195,7 @@ ControlPoints load_control_points(const std::filesystem::path& file) {
 ControlPoint parse_control_point(std::string_view text, const std::string& id) {
   const std::string name = "control point '" + std::string(text) + "'";
   const Place place{name, 0};
-  const std::vector<Value> values = split(text);
+  const std::vector<CsvValue> values = split(text);
   if (values.size() != kPoint - 1 && values.size() != kSphere - 1 && values.size() != kCapsule - 1) {
     fail_at(place, values[0],
             std::to_string(values.size()) +

@@ -40,7 +40,7 @@ struct Writer {
   }
 };
 
-[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+[[noreturn]] void on_write_error(png_structp png, png_const_charp message) {
   auto* writer = static_cast<Writer*>(png_get_error_ptr(png));
   // Into a fixed buffer: nothing may be constructed across the jump.
   const std::size_t length = std::min(std::strlen(message), writer->message.size() - 1);
@@ -49,7 +49,7 @@ struct Writer {
   png_longjmp(png, 1);
 }
 
-void on_warning(png_structp /*png*/, png_const_charp /*message*/) {}
+void on_write_warning(png_structp /*png*/, png_const_charp /*message*/) {}
 
 bool write_image(Writer& writer, std::FILE* stream, const Layout& layout, const png_byte* pixels) noexcept {
   if (setjmp(png_jmpbuf(writer.png)) != 0) {  // NOLINT(cert-err52-cpp): libpng's own way of reporting errors
@@ -86,7 +86,7 @@ void write_png(const std::filesystem::path& file, const Layout& layout, std::siz
   }
   FileReplacement target(file);
   Writer writer;
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_write_error, on_write_warning);
   writer.info = writer.png != nullptr ? png_create_info_struct(writer.png) : nullptr;
   if (writer.info == nullptr) {
     fail(file.string(), ": cannot be written: libpng could not be started (out of memory?)");

@@ -33,11 +33,11 @@ const Value* find(const Value& object, const char* key) {
   return member != object.MemberEnd() ? &member->value : nullptr;
 }
 
-std::string text_of(const Value& string) { return {string.GetString(), string.GetStringLength()}; }
+std::string name_text(const Value& string) { return {string.GetString(), string.GetStringLength()}; }
 
 /// Names go into messages, tables and file names: one line, no NUL.
 std::string name_of(const Value& string) {
-  std::string text = text_of(string);
+  std::string text = name_text(string);
   if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
     fail(excerpt(string), " holds a control character, names must not");
   }
@@ -65,7 +65,7 @@ Distortion distortion_of(const Value& value) {
       coefficients.push_back(coefficient.GetDouble());
     }
   }
-  return make_distortion(kModels.at(text_of(value["model"])), coefficients);
+  return make_distortion(kModels.at(name_text(value["model"])), coefficients);
 }
 
 /// What the file says for all its cameras.
@@ -154,7 +154,7 @@ std::string read_frames(const Value& frames, RigFile& file, const std::string& n
   if (pattern == nullptr) {
     return {};
   }
-  std::string announced = text_of(*pattern);
+  std::string announced = name_text(*pattern);
   if (at_place(name, "/frames/pattern", [&] { return checked_conversion(announced); }) != announced) {
     fail(name, ": /frames/pattern: '", announced, "' is not a conversion %d or %0Nd and nothing else");
   }

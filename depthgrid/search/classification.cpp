@@ -22,11 +22,11 @@ struct Look {
 };
 
 /// Pixels, inclusive.
-struct Window {
+struct PixelWindow {
   int u0, v0, u1, v1;
 
-  [[nodiscard]] Window grown(int by_px) const noexcept { return {u0 - by_px, v0 - by_px, u1 + by_px, v1 + by_px}; }
-  [[nodiscard]] Window clipped_to(const Window& other) const noexcept {
+  [[nodiscard]] PixelWindow grown(int by_px) const noexcept { return {u0 - by_px, v0 - by_px, u1 + by_px, v1 + by_px}; }
+  [[nodiscard]] PixelWindow clipped_to(const PixelWindow& other) const noexcept {
     return {std::max(u0, other.u0), std::max(v0, other.v0), std::min(u1, other.u1), std::min(v1, other.v1)};
   }
 };
@@ -39,11 +39,11 @@ struct Sight {
   Eigen::Vector3d p;
   double slack_m;  ///< resolution and reach
 
-  [[nodiscard]] Window image() const noexcept { return {0, 0, view.width_px() - 1, view.height_px() - 1}; }
+  [[nodiscard]] PixelWindow image() const noexcept { return {0, 0, view.width_px() - 1, view.height_px() - 1}; }
 
   /// What the readings in these pixels say, added to what is known. The window may leave the image.
-  void read(const Window& pixels, Look& known) const noexcept {
-    const Window inside = pixels.clipped_to(image());
+  void read(const PixelWindow& pixels, Look& known) const noexcept {
+    const PixelWindow inside = pixels.clipped_to(image());
     known.unmeasured = known.unmeasured || inside.u0 > pixels.u0 || inside.v0 > pixels.v0 || inside.u1 < pixels.u1 ||
                        inside.v1 < pixels.v1;
     for (int v = inside.v0; v <= inside.v1; ++v) {
@@ -62,7 +62,7 @@ struct Sight {
 
   /// The same for those pixels of a block of 4 * 2^level a side that do not free what is within slack of the point; the
   /// pyramid says which blocks have none. Stops at a measured one, which nothing outranks.
-  void read_block(std::size_t level, int i, int j, const Window& window, int& pixels_left, Look& known) const noexcept {
+  void read_block(std::size_t level, int i, int j, const PixelWindow& window, int& pixels_left, Look& known) const noexcept {
     const PyramidLevel& texels = view.levels()[level];
     const auto texel =
         static_cast<std::size_t>(4 * j) * static_cast<std::size_t>(texels.width) + static_cast<std::size_t>(4 * i);
@@ -71,8 +71,8 @@ struct Sight {
       return;
     }
     if (level == 0) {
-      const Window block{4 * i, 4 * j, 4 * i + 3, 4 * j + 3};
-      const Window reached = block.clipped_to(window).grown(margin.lateral_px);
+      const PixelWindow block{4 * i, 4 * j, 4 * i + 3, 4 * j + 3};
+      const PixelWindow reached = block.clipped_to(window).grown(margin.lateral_px);
       pixels_left -= (reached.u1 - reached.u0 + 1) * (reached.v1 - reached.v0 + 1);
       read(reached, known);
       return;
@@ -83,7 +83,7 @@ struct Sight {
         pixels_left, known);
   }
 
-  void read_blocks(std::size_t level, const Window& window, int& pixels_left, Look& known) const noexcept {
+  void read_blocks(std::size_t level, const PixelWindow& window, int& pixels_left, Look& known) const noexcept {
     for (int j = window.v0 >> (level + 2); j <= window.v1 >> (level + 2); ++j) {
       for (int i = window.u0 >> (level + 2); i <= window.u1 >> (level + 2); ++i) {
         read_block(level, i, j, window, pixels_left, known);
@@ -93,7 +93,7 @@ struct Sight {
 };
 
 /// All pixels that a ball before the camera's plane projects to, or more; may leave the image.
-Window window_of(const PinholeCamera& c, const Eigen::Vector3d& p, double radius_m) noexcept {
+PixelWindow pixel_window(const PinholeCamera& c, const Eigen::Vector3d& p, double radius_m) noexcept {
   const auto bound = [&](double x, double away_m, double f_px, double c_px) {
     const double end = x + away_m;
     const double px = c_px + f_px * end / (p.z() + (end * away_m > 0 ? -radius_m : radius_m));
@@ -110,8 +110,8 @@ Look look_around(const Sight& sight, double near_m) noexcept {
     result.unmeasured = true;
     return result;
   }
-  const Window window = window_of(sight.pinhole, sight.p, sight.slack_m);
-  const Window inside = window.clipped_to(sight.image());
+  const PixelWindow window = pixel_window(sight.pinhole, sight.p, sight.slack_m);
+  const PixelWindow inside = window.clipped_to(sight.image());
   result.unmeasured = inside.u0 > window.u0 || inside.v0 > window.v0 || inside.u1 < window.u1 || inside.v1 < window.v1;
   std::size_t level = 0;
   while (level + 1 < sight.view.levels().size() &&
@@ -155,7 +155,7 @@ Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world
     const auto u = static_cast<int>(p.x_px);
     const auto v = static_cast<int>(p.y_px);
     Look seen;
-    sight.read(Window{u, v, u, v}.grown(sight.margin.lateral_px), seen);
+    sight.read(PixelWindow{u, v, u, v}.grown(sight.margin.lateral_px), seen);
     if (!seen.anything()) {
       seen = look_around(sight, camera.rule.near_m);
     }

@@ -18,8 +18,8 @@ constexpr double kSharedExtent = 4.0;
 /// Of the cameras' reach with range, as far as leaves follow it.
 constexpr double kLargestRate = 3.2;
 
-float rounded_down(double value) noexcept { return std::nextafter(static_cast<float>(value), -1e30F); }
-float rounded_up(double value) noexcept { return std::nextafter(static_cast<float>(value), 1e30F); }
+float float_below(double value) noexcept { return std::nextafter(static_cast<float>(value), -1e30F); }
+float float_above(double value) noexcept { return std::nextafter(static_cast<float>(value), 1e30F); }
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier,
     query_.order[k] = static_cast<std::uint8_t>(k);
   }
   query_.uncovered_ignored = settings_.policies.unobserved == Policy::ignored;
-  query_.slack_m = rounded_down(settings_.resolution_m - 1e-5);
+  query_.slack_m = float_below(settings_.resolution_m - 1e-5);
   least_reach_m_ = 1e30;
   for (std::size_t k = 0; k < query_.camera_count; ++k) {
     const PoseMargin& e = snapshot.pose_margin(k);
@@ -95,14 +95,14 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
     query_.boxed =
         ((space_low_ - middle).array() > -extent_m).any() || ((space_high_ - middle).array() < extent_m).any();
     for (std::size_t i = 0; i < 3; ++i) {
-      query_.box_low[i] = rounded_down(space_low_[static_cast<Eigen::Index>(i)]);
-      query_.box_high[i] = rounded_up(space_high_[static_cast<Eigen::Index>(i)]);
+      query_.box_low[i] = float_below(space_low_[static_cast<Eigen::Index>(i)]);
+      query_.box_high[i] = float_above(space_high_[static_cast<Eigen::Index>(i)]);
     }
   } else {
     const auto& frustum = std::get<FrustumSpace>(settings_.space);
     query_.principal = static_cast<int>(frustum.principal);
-    query_.d_min_m = rounded_down(frustum.d_min_m);
-    query_.d_max_m = rounded_up(frustum.d_max_m);
+    query_.d_min_m = float_below(frustum.d_min_m);
+    query_.d_max_m = float_above(frustum.d_max_m);
   }
 }
 
@@ -211,7 +211,7 @@ std::size_t Descent::add(const Primitive& primitive, double limit_m) noexcept {
 /// Cubes have to be nearer than this, a little more because of single precision.
 void Descent::set_bound(std::size_t i, double bound_m) noexcept {
   constexpr double kRoundings = 8 * 0x1p-24;
-  query_.axes[i].bound_m = bound_m > 0 ? rounded_up(bound_m + 1e-6 + kRoundings * extent_m_) : 0.0F;
+  query_.axes[i].bound_m = bound_m > 0 ? float_above(bound_m + 1e-6 + kRoundings * extent_m_) : 0.0F;
 }
 
 bool Descent::is_of_interest(const Cube& cube) const noexcept {

@@ -7,7 +7,6 @@
 namespace depthgrid::search {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = 0x1p-24;  ///< half an ulp of 1 in single precision
 
 float up(double value) noexcept {
@@ -83,7 +82,7 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   constexpr double kBeyondM = 1e-9;
   const double from_m = local.near_m + kBeyondM;
   local.coverage = is_principal ? view_between(std::max(from_m, frustum->d_min_m), frustum->d_max_m)
-                                : view_between(from_m, kInfinity);
+                                : view_between(from_m, std::numeric_limits<double>::infinity());
   local.coverage.low_m = std::max(local.coverage.low_m, std::nextafter(local.blind_m, 1e30F));
 }
 

@@ -11,7 +11,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFocal = 525;
 constexpr int kMostCameras = 16;
 
@@ -71,7 +70,7 @@ Arrangement arrangement(int cameras, std::string_view sensor) {
     result.rig.cameras.push_back(camera(2, sensor, letter_pose(result, 1)));
   }
   for (int i = 1; i < cameras && cameras > 2; ++i) {
-    const double azimuth_rad = kPi + 2 * kPi * i / cameras;
+    const double azimuth_rad = std::numbers::pi + 2 * std::numbers::pi * i / cameras;
     const double height_m = i % 2 == 0 ? 0.9 : 1.5;
     const Eigen::Vector3d position(2.4 * std::cos(azimuth_rad), 2.4 * std::sin(azimuth_rad), height_m);
     result.rig.cameras.push_back(camera(i + 1, sensor, look_at(position, {0, 0, 0.4})));

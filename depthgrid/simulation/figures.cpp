@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depthgrid/simulation/rotation_about.hpp"
+
 namespace depthgrid::simulation {
 
 namespace {
@@ -10,10 +12,6 @@ namespace {
 constexpr double kUpperArm = 0.30;
 constexpr double kForearm = 0.26;
 constexpr double kHand = 0.15;
-
-Eigen::Matrix3d about(double angle_rad, const Eigen::Vector3d& axis) {
-  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
-}
 
 struct Reach {
   Eigen::Vector3d elbow;

@@ -3,17 +3,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "depthgrid/simulation/rotation_about.hpp"
+
 namespace depthgrid::simulation {
 
 namespace {
 
-constexpr std::array<std::size_t, 2> kUpperArm{5, 8};  ///< of person(): upper arm, forearm and hand follow each other
-constexpr std::array<std::size_t, 2> kThigh{11, 14};   ///< thigh, shank and foot follow each other
+constexpr std::array<std::size_t, 2> kUpperArms{5, 8};  ///< of person(): upper arm, forearm and hand follow each other
+constexpr std::array<std::size_t, 2> kThighs{11, 14};   ///< thigh, shank and foot follow each other
 constexpr std::array<double, 3> kArmLengths{0.30, 0.26, 0.15};
-
-Eigen::Matrix3d about(double angle_rad, const Eigen::Vector3d& axis) {
-  return Eigen::AngleAxisd(angle_rad, axis).toRotationMatrix();
-}
 
 Eigen::Matrix3d lower_body(const PersonConfiguration& c) { return about(c.heading_rad, Eigen::Vector3d::UnitZ()); }
 Eigen::Matrix3d upper_body(const PersonConfiguration& c) {
@@ -41,7 +39,7 @@ std::array<Capsule, 17> person(const PersonConfiguration& c) noexcept {
   const Eigen::Matrix3d upper = upper_body(c);
   const Eigen::Vector3d to_the_left = lower_body(c).col(1);
   for (std::size_t side = 0; side < 2; ++side) {
-    Capsule* const arm = &parts[kUpperArm[side]];
+    Capsule* const arm = &parts[kUpperArms[side]];
     const ArmDirections& directions = c.arms[side];
     Eigen::Vector3d joint = arm[0].a_world;
     std::size_t i = 0;
@@ -50,7 +48,7 @@ std::array<Capsule, 17> person(const PersonConfiguration& c) noexcept {
       joint += kArmLengths[i] * (upper * *direction);
       arm[i++].b_world = joint;
     }
-    Capsule* const leg = &parts[kThigh[side]];
+    Capsule* const leg = &parts[kThighs[side]];
     // About the axis to the left a positive turn is backwards for what hangs down.
     const Eigen::Matrix3d hip = about(-c.legs[side].hip_rad, to_the_left);
     const Eigen::Vector3d hip_joint = leg[0].a_world;
@@ -62,12 +60,12 @@ std::array<Capsule, 17> person(const PersonConfiguration& c) noexcept {
     turn(leg[1], knee_joint, knee);
     turn(leg[2], knee_joint, knee);
   }
-  double lowest_m = parts[kThigh[0] + 2].a_world.z();
-  for (const std::size_t thigh : kThigh) {
+  double lowest_m = parts[kThighs[0] + 2].a_world.z();
+  for (const std::size_t thigh : kThighs) {
     const Capsule& foot = parts[thigh + 2];
     lowest_m = std::min({lowest_m, foot.a_world.z(), foot.b_world.z()});
   }
-  const double sunk_m = lowest_m - parts[kThigh[0] + 2].radius_m - c.floor_m;
+  const double sunk_m = lowest_m - parts[kThighs[0] + 2].radius_m - c.floor_m;
   for (Capsule& part : parts) {
     part.a_world.z() -= sunk_m;
     part.b_world.z() -= sunk_m;
@@ -82,14 +80,14 @@ ArmDirections arm_towards(const PersonConfiguration& c, std::size_t side,
   const std::array<Capsule, 17> parts = person(pose);
   const Eigen::Matrix3d to_upper = upper_body(c).transpose();
   const auto direction = [&](std::size_t i) {
-    const Capsule& bone = parts[kUpperArm[side] + i];
+    const Capsule& bone = parts[kUpperArms[side] + i];
     return Eigen::Vector3d(to_upper * (bone.b_world - bone.a_world).normalized());
   };
   return {direction(0), direction(1), direction(2)};
 }
 
 Eigen::Vector3d between_hands(const std::array<Capsule, 17>& parts) noexcept {
-  return 0.5 * (parts[kUpperArm[0] + 2].b_world + parts[kUpperArm[1] + 2].b_world);
+  return 0.5 * (parts[kUpperArms[0] + 2].b_world + parts[kUpperArms[1] + 2].b_world);
 }
 
 }  // namespace depthgrid::simulation

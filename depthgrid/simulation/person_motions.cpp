@@ -9,7 +9,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kLeft = 0;
 constexpr std::size_t kRight = 1;
 
@@ -98,7 +97,7 @@ Eigen::Vector3d scatter(Dice& dice, double half_m) {
 }
 
 void walk_in(Choreography& person, const PersonStage& stage, Dice& dice) {
-  const double from_rad = dice.uniform(-kPi, kPi);
+  const double from_rad = dice.uniform(-std::numbers::pi, std::numbers::pi);
   const double beside_m = dice.uniform(0.8, 1.2);
   const double around_rad = dice.sign() * dice.uniform(0.5, 1.2);
   person.enter(person.robot() + stage.entrance_m * direction(from_rad), person.robot());
@@ -109,7 +108,7 @@ void walk_in(Choreography& person, const PersonStage& stage, Dice& dice) {
 }
 
 void reach(Choreography& person, const PersonStage& stage, Dice& dice, bool with_box) {
-  const double from_rad = dice.uniform(-kPi, kPi);
+  const double from_rad = dice.uniform(-std::numbers::pi, std::numbers::pi);
   const Eigen::Vector2d entrance = person.robot() + stage.entrance_m * direction(from_rad);
   person.enter(entrance, person.robot());
   const std::array<ArmDirections, 2> arms = person.now().arms;
@@ -147,7 +146,7 @@ void arm_between(Choreography& person, const PersonStage& stage, Dice& dice) {
   const Eigen::Vector3d crossing_world = stage.robot_world + away_m * from_robot.normalized();
   const double side = dice.sign();
   const double to_camera_rad = azimuth(from_robot.head<2>());
-  const Eigen::Vector2d aside = side * direction(to_camera_rad + kPi / 2);
+  const Eigen::Vector2d aside = side * direction(to_camera_rad + std::numbers::pi / 2);
   const Eigen::Vector2d place_m = crossing_world.head<2>() + dice.uniform(0.5, 0.6) * aside;
   const Eigen::Vector2d entrance = place_m + (stage.entrance_m - 1.0) * aside;
   person.enter(entrance, place_m);

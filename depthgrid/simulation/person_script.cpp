@@ -12,7 +12,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kStride = 1.2;      ///< both feet once [m]
 constexpr double kLegLength = 0.82;  ///< hip to ankle [m]
 constexpr double kKnee = 0.5;        ///< of the leg in the air [rad]
@@ -36,10 +35,10 @@ ArmDirections turned(const ArmDirections& from, const ArmDirections& to, double 
 /// Legs after `walked_m` of `way_m`: the foot on the floor hardly slips, the other one is lifted.
 std::array<LegAngles, 2> gait(double walked_m, double way_m) {
   const double ramp = std::clamp(std::min(walked_m, way_m - walked_m) / kRamp, 0.0, 1.0);
-  const double amplitude_rad = ramp * kStride / (2 * kPi * kLegLength);
+  const double amplitude_rad = ramp * kStride / (2 * std::numbers::pi * kLegLength);
   std::array<LegAngles, 2> legs;
   for (std::size_t side = 0; side < 2; ++side) {
-    const double phase = 2 * kPi * walked_m / kStride + (side == 0 ? 0 : kPi);
+    const double phase = 2 * std::numbers::pi * walked_m / kStride + (side == 0 ? 0 : std::numbers::pi);
     legs[side].hip_rad = amplitude_rad * std::sin(phase);
     const double forward = std::max(0.0, std::cos(phase));  // this leg swings forward
     legs[side].knee_rad = ramp * kKnee * forward * forward;
@@ -47,7 +46,7 @@ std::array<LegAngles, 2> gait(double walked_m, double way_m) {
   return legs;
 }
 
-double heading_difference(double from_rad, double to_rad) { return std::remainder(to_rad - from_rad, 2 * kPi); }
+double heading_difference(double from_rad, double to_rad) { return std::remainder(to_rad - from_rad, 2 * std::numbers::pi); }
 
 /// How far the fastest point of the person has come.
 double largest_move_m(const PersonState& before, const PersonState& after) {

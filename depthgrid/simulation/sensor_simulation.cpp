@@ -14,7 +14,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 enum Stream : std::uint64_t { kLateral = 1, kAxial, kDropout, kVibration, kBias };
 
@@ -51,11 +50,11 @@ void validate(const SensorSimulation& s) {
 
 /// Whether the slant of the surface decides anything.
 bool asks_slant(const SensorSimulation& s) {
-  return s.noise_slant > 0 || s.lateral_slant_px > 0 || s.largest_slant_rad < kPi / 2;
+  return s.noise_slant > 0 || s.lateral_slant_px > 0 || s.largest_slant_rad < std::numbers::pi / 2;
 }
 
 /// theta / (pi/2 - theta), which grows without limit towards grazing views.
-double steepness(double slant_rad) { return slant_rad / std::max(1e-3, kPi / 2 - slant_rad); }
+double steepness(double slant_rad) { return slant_rad / std::max(1e-3, std::numbers::pi / 2 - slant_rad); }
 
 /// 0 for a reading that the sensor does not give.
 float in_range(const SensorSimulation& s, double reading_m) {
@@ -73,7 +72,7 @@ int nearest_integer(double x) {
 std::vector<float> smooth_pattern(const PinholeCamera& camera, std::uint64_t seed) {
   const PixelRandom random(seed, 0, kBias);
   const auto wave = [&random](std::uint64_t n, double share) {
-    return std::cos(kPi * (1 + random.uniform(n)) * share + 2 * kPi * random.uniform(n + 1));
+    return std::cos(std::numbers::pi * (1 + random.uniform(n)) * share + 2 * std::numbers::pi * random.uniform(n + 1));
   };
   std::vector<float> pattern;
   for (int v = 0; v < camera.height_px; ++v) {

@@ -9,7 +9,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 /// Rings of vertices from the pole at `b` to the one at `a`; the same polar angle may stand at both ends of a capsule.
 TriangleMesh round_mesh(const Capsule& capsule, int segments, bool two_ends) {
@@ -24,7 +23,7 @@ TriangleMesh round_mesh(const Capsule& capsule, int segments, bool two_ends) {
   TriangleMesh mesh;
   const auto ring = [&](const Eigen::Vector3d& centre, double polar_rad) {
     for (int k = 0; k < segments; ++k) {
-      const double around_rad = 2 * kPi * k / segments;
+      const double around_rad = 2 * std::numbers::pi * k / segments;
       const Eigen::Vector3d normal =
           std::sin(polar_rad) * (std::cos(around_rad) * x + std::sin(around_rad) * y) + std::cos(polar_rad) * axis;
       mesh.vertices_m.emplace_back((centre + capsule.radius_m * normal).cast<float>());
@@ -32,10 +31,10 @@ TriangleMesh round_mesh(const Capsule& capsule, int segments, bool two_ends) {
   };
   int rings = 0;
   for (int i = 1; i <= half_rings; ++i, ++rings) {
-    ring(capsule.b_world, 0.5 * kPi * i / half_rings);
+    ring(capsule.b_world, 0.5 * std::numbers::pi * i / half_rings);
   }
   for (int i = two_ends ? 0 : 1; i < half_rings; ++i, ++rings) {
-    ring(capsule.a_world, 0.5 * kPi * (1 + static_cast<double>(i) / half_rings));
+    ring(capsule.a_world, 0.5 * std::numbers::pi * (1 + static_cast<double>(i) / half_rings));
   }
   const int top = rings * segments;
   const int bottom = top + 1;
@@ -107,7 +106,7 @@ TriangleMesh mesh_of(const Capsule& capsule, int segments) {
 
 double inscribed_depth_m(double radius_m, int segments) noexcept {
   // A facet spans 2 pi / segments around the axis and no more from pole to pole; its middle is lowest in both.
-  const double half_rad = kPi / segments;
+  const double half_rad = std::numbers::pi / segments;
   return radius_m * (1 - std::cos(half_rad) * std::cos(half_rad));
 }
 
