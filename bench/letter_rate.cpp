@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--page", page, "also write the page (Markdown)");
   app.add_option("--plot", plot, "also draw the plot (PNG)");
-  app.add_flag("--check", check, "fail unless the ratios hold that the page claims (never absolute times)");
+  app.add_flag("--check", check,
+               "fail unless the minimum saves cells and cells grow no faster than cameras (never times)");
   CLI11_PARSE(app, argc, argv);
 
   try {

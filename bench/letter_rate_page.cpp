@@ -124,16 +124,20 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
 }
 
 std::string broken_ratio(std::span<const RateRow> rows) {
+  const auto cells = [](const RateRow& row) {
+    return static_cast<double>(row.count.cells) /
+           static_cast<double>(std::max<std::size_t>(row.evaluation_s.size(), 1));
+  };
   for (const RateRow& row : rows) {
     const std::string method = row.name.substr(0, row.name.find(','));
     const RateRow* hybrid = find(rows, method + ", hybrid", row.cameras);
-    if (hybrid != nullptr && hybrid != &row && row.rate() < 1.2 * hybrid->rate()) {
-      return row.name + " with " + std::to_string(row.cameras) + " cameras is not 1.2 times faster than hybrid";
+    if (hybrid != nullptr && hybrid != &row && cells(row) * 1.2 > cells(*hybrid)) {
+      return row.name + " with " + std::to_string(row.cameras) + " cameras does not save a sixth of the hybrid's cells";
     }
     const RateRow* few = find(rows, row.name, 2);
     if (few != nullptr && row.cameras > 2 && row.name == "letter, hybrid" &&
-        few->rate() / row.rate() > 2.0 * (row.cameras - 1)) {
-      return row.name + ": time grows more than twice as fast as the number of secondary cameras";
+        cells(row) > 1.1 * (row.cameras - 1) * cells(*few)) {
+      return row.name + ": cells grow faster than the number of secondary cameras";
     }
   }
   return {};

@@ -17,7 +17,8 @@ void draw_rate_plot(const std::string& file, std::span<const RateRow> rows);
 /// Throws Error when the file cannot be written.
 void write_rate_page(const std::string& file, std::span<const RateRow> rows, int frame_sets);
 
-/// One line about the first claimed ratio that does not hold; empty when all do. Ratios of CPU times taken in one run.
+/// One line about the first claimed ratio that does not hold; empty when all do. Ratios of the cells that are checked,
+/// which decide the time and, unlike it, are the same in every run.
 [[nodiscard]] std::string broken_ratio(std::span<const RateRow> rows);
 
 }  // namespace depthgrid::bench

@@ -46,7 +46,9 @@ std::array<LegAngles, 2> gait(double walked_m, double way_m) {
   return legs;
 }
 
-double heading_difference(double from_rad, double to_rad) { return std::remainder(to_rad - from_rad, 2 * std::numbers::pi); }
+double heading_difference(double from_rad, double to_rad) {
+  return std::remainder(to_rad - from_rad, 2 * std::numbers::pi);
+}
 
 /// How far the fastest point of the person has come.
 double largest_move_m(const PersonState& before, const PersonState& after) {

@@ -14,7 +14,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-
 enum Stream : std::uint64_t { kLateral = 1, kAxial, kDropout, kVibration, kBias };
 
 void require(bool holds, const SensorSimulation& sensor, const char* what, double value) {

@@ -9,7 +9,6 @@ namespace depthgrid::simulation {
 
 namespace {
 
-
 /// Rings of vertices from the pole at `b` to the one at `a`; the same polar angle may stand at both ends of a capsule.
 TriangleMesh round_mesh(const Capsule& capsule, int segments, bool two_ends) {
   if (segments < 3) {
