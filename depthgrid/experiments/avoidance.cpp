@@ -36,7 +36,7 @@ class PathPanel {
   [[nodiscard]] report::Rectangle area() const { return {left_px_, top_px_, kSide, kSide}; }
 
   void grid(const std::string& name) {
-    for (int i = 0; i <= static_cast<int>(kSide / kScale / kStep + 0.5); ++i) {
+    for (int i = 0; i <= kSteps; ++i) {
       const double x_m = kLeft + i * kStep;
       const double z_m = kTop - i * kStep;
       canvas_.line(at(x_m, kTop), at(x_m, kTop - kSide / kScale), {report::Colour{0.87, 0.87, 0.87}, 1});
@@ -57,10 +57,11 @@ class PathPanel {
     canvas_.unclip();
   }
 
-  static constexpr double kSide = 330;
+  static constexpr double kSide = 330;  // pixels
 
  private:
   static constexpr double kLeft = -0.75, kTop = 1.35, kScale = 220, kStep = 0.25;  // metres, pixels a metre, metres
+  static constexpr int kSteps = 6;                                                 // kSide / kScale / kStep
   report::Canvas& canvas_;
   double left_px_;
   double top_px_;
@@ -71,7 +72,8 @@ report::Canvas picture_of_paths(const Comparison& comparison, const std::vector<
   report::Canvas canvas(static_cast<int>(3 * kPitch) + 20, static_cast<int>(2 * kPitch) + 30);
   int number = 0;
   for (const auto& [method, run] : comparison.runs) {
-    PathPanel panel(canvas, 60 + kPitch * (number % 3), 40 + (kPitch + 10) * (number / 3));
+    const int row = number / 3;
+    PathPanel panel(canvas, 60 + kPitch * (number % 3), 40 + (kPitch + 10) * row);
     panel.grid(std::string(title(method)));
     std::vector<report::CanvasPoint> task;
     for (std::size_t i = 0; i <= hexagon.size(); ++i) {

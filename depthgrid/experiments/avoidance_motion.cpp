@@ -106,7 +106,8 @@ AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3
   }
   double nearest_m = std::numeric_limits<double>::infinity();
   double nearest_s = 0;
-  for (double t = 0; t <= motion.duration_s; t += kStep) {
+  for (int i = 0; i * kStep <= motion.duration_s; ++i) {
+    const double t = i * kStep;
     for (const Capsule& capsule : motion.at(t).capsules) {
       const double distance_m = axis_distance_m(capsule, p_world) - capsule.radius_m;
       if (distance_m < nearest_m) {
@@ -124,8 +125,8 @@ AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3
 
 bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig) {
   constexpr double kNear = 0.35;
-  for (double t = 0; motion.at && t <= motion.duration_s; t += kStep) {
-    for (const Capsule& capsule : motion.at(t).capsules) {
+  for (int i = 0; motion.at && i * kStep <= motion.duration_s; ++i) {
+    for (const Capsule& capsule : motion.at(i * kStep).capsules) {
       for (const RigCamera& camera : rig.cameras) {
         if (axis_distance_m(capsule, camera.T_world_camera.translation()) < kNear + capsule.radius_m) {
           return true;

@@ -31,7 +31,6 @@ class Run {
  public:
   Run(Method method, const robot::RobotModel& model, const AvoidanceMotion& motion, const RunSettings& settings)
       : model_(model),
-        motion_(motion),
         settings_(settings),
         common_(settings.common),
         method_(method),
@@ -240,7 +239,6 @@ class Run {
   }
 
   const robot::RobotModel& model_;
-  const AvoidanceMotion& motion_;
   const RunSettings& settings_;
   const AvoidanceSettings& common_;
   Method method_;

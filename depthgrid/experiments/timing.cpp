@@ -234,7 +234,7 @@ void run_timing(const Options& options, ExperimentReport& report) {
 
   std::size_t passed = 2;
   for (const LoopParts parts : {LoopParts::nine_points, LoopParts::link_capsules}) {
-    const double before = static_cast<double>(passed);
+    const auto before = static_cast<double>(passed);
     const PacedRun run = run_paced(recording, parts, settings, paced_s, budget, [&](double at_s) {
       options.progress(static_cast<std::size_t>(before + at_s), steps);
     });
