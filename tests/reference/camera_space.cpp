@@ -92,6 +92,33 @@ CameraSpace::CameraSpace(const CameraInput& input)
       pixels_[index(u, v)].free_m = smallest_m;
     }
   }
+  note_strips();
+}
+
+void CameraSpace::note_strips() {
+  strips_a_row_ = (camera_.width_px + kStrip - 1) / kStrip;
+  strips_m_.assign(static_cast<std::size_t>(strips_a_row_) * static_cast<std::size_t>(camera_.height_px), kInfinity);
+  for (int v = 0; v < camera_.height_px; ++v) {
+    for (int u = 0; u < camera_.width_px; ++u) {
+      double& first_m = strips_m_[static_cast<std::size_t>(v * strips_a_row_ + u / kStrip)];
+      for (const auto& [d1_m, d2_m] : not_free_depths(u, v)) {
+        if (d1_m < d2_m && d2_m > near_m_) {
+          first_m = std::min(first_m, d1_m);
+        }
+      }
+    }
+  }
+}
+
+int CameraSpace::skip_free(int u, int v, int u_last, double z_low_m, double z_high_m) const {
+  if (strips_m_.empty() || z_low_m <= near_m_) {
+    return u;
+  }
+  const double* const row = strips_m_.data() + static_cast<std::ptrdiff_t>(v) * strips_a_row_;
+  while (u <= u_last && row[u / kStrip] > z_high_m) {
+    u = (u / kStrip + 1) * kStrip;
+  }
+  return std::min(u, u_last + 1);
 }
 
 bool CameraSpace::not_free(const Eigen::Vector3d& p_world) const {
@@ -158,8 +185,13 @@ bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double rad
   if (!window) {
     return true;
   }
+  const int u_last = std::min(window->u_last, camera_.width_px - 1);
   for (int v = std::max(window->v_first, 0); v <= std::min(window->v_last, camera_.height_px - 1); ++v) {
-    for (int u = std::max(window->u_first, 0); u <= std::min(window->u_last, camera_.width_px - 1); ++u) {
+    for (int u = std::max(window->u_first, 0); u <= u_last; ++u) {
+      u = skip_free(u, v, u_last, p.z() - radius_m, p.z() + radius_m);
+      if (u > u_last) {
+        break;
+      }
       for (const auto& [d1_m, d2_m] : not_free_depths(u, v)) {
         const bool in_reach = d1_m < d2_m && d1_m <= p.z() + radius_m && d2_m >= p.z() - radius_m;
         if (in_reach && piece(u, v, d1_m, d2_m).meets_ball(p, radius_m)) {

@@ -73,6 +73,9 @@ class CameraSpace {
 
   /// The depths z > 0 of a pixel of the image that are not free and not the robot.
   [[nodiscard]] Depths not_free_depths(int u, int v) const;
+  /// At least u, and at most the next pixel of the row, window's end included, with anything not free and not the robot
+  /// between the two depths. Saves looking at every pixel where nothing is.
+  [[nodiscard]] int skip_free(int u, int v, int u_last, double z_low_m, double z_high_m) const;
   /// The pixel's pyramid between two depths.
   [[nodiscard]] PyramidPiece piece(int u, int v, double d1_m, double d2_m) const;
   /// All pixels on which the hull of the corners projects, or nothing when it is not wholly before the camera.
@@ -98,6 +101,9 @@ class CameraSpace {
   [[nodiscard]] bool has_reach() const { return pose_.translation_m > 0 || pose_.rotation_rad > 0 || pose_.time_m > 0; }
 
  private:
+  static constexpr int kStrip = 16;
+  void note_strips();
+
   struct Pixel {
     double free_m = 0;        ///< g
     double robot_near_m = 0;  ///< 0: no robot
@@ -117,6 +123,9 @@ class CameraSpace {
   std::array<double, 4> border_slopes_{};
   std::array<double, 4> border_scales_{};
   std::vector<Pixel> pixels_;
+  /// Of kStrip pixels side by side, row by row: least depth beyond the blind zone that is not free and not the robot.
+  std::vector<double> strips_m_;
+  int strips_a_row_ = 0;
 };
 
 }  // namespace depthgrid::reference

@@ -111,6 +111,10 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
   const bool many = width(window) > 0 && height(window) > 0 && width(window) * height(window) > kMostPixels;
   for (int v = window.v_first; v <= window.v_last && result_m > useless_m; ++v) {
     for (int u = window.u_first; u <= window.u_last; ++u) {
+      u = camera_->skip_free(u, v, window.u_last, z_low, z_high);
+      if (u > window.u_last) {
+        break;
+      }
       const CameraSpace::Depths depths = camera_->not_free_depths(u, v);
       for (std::size_t i = 0; i < depths.size(); ++i) {
         const auto& [d1_m, d2_m] = depths[i];
