@@ -2,16 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "depthgrid/experiments/campaign_motions.hpp"
 #include "depthgrid/experiments/campaign_report.hpp"
-#include "depthgrid/experiments/loop_clock.hpp"
 #include "depthgrid/experiments/plate_scene.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
+#include "support/random_run.hpp"
 #include "support/thrown_message.hpp"
 
 namespace depthgrid::experiments {
@@ -80,17 +79,22 @@ TEST(Avoidance, RunsRepeatToTheBit) {
 }
 
 TEST(Campaign, TheSearchCausesNoContactAndHoldsNothingForTooFar) {
-  const CampaignPlan plan = small_campaign(10);
+  constexpr int kEnough = 10;  // for motions that touch an arm that does not avoid
+  const test::RandomRun random = test::random_run(kEnough);
+  CampaignPlan plan = small_campaign(static_cast<int>(random.count));
+  plan.seed = random.seed;
   const CampaignState state = run(plan, {}, {});
-  ASSERT_EQ(state.motions.size(), 10U);
+  ASSERT_EQ(state.motions.size(), static_cast<std::size_t>(random.count));
   const MethodTotals none = totals(state, Method::none, plan.duration_s);
   const MethodTotals search = totals(state, Method::search, plan.duration_s);
-  EXPECT_GT(none.with_contact, 0) << "motions that touch nothing show nothing";
-  EXPECT_GT(search.watched, 1000);
-  EXPECT_EQ(search.over_estimates, 0) << search.largest_over_estimate_m;
-  EXPECT_TRUE(contacts_caused(state, Method::search, plan.common.v_max_m_s).empty());
-  EXPECT_TRUE(contacts_caused(state, Method::search_pockets, plan.common.v_max_m_s).empty());
-  EXPECT_GT(search.median_smallest_m, none.median_smallest_m);
+  EXPECT_EQ(search.over_estimates, 0) << search.largest_over_estimate_m << random.reproduce();
+  EXPECT_TRUE(contacts_caused(state, Method::search, plan.common.v_max_m_s).empty()) << random.reproduce();
+  EXPECT_TRUE(contacts_caused(state, Method::search_pockets, plan.common.v_max_m_s).empty()) << random.reproduce();
+  if (random.count >= kEnough) {
+    EXPECT_GT(none.with_contact, 0) << "motions that touch nothing show nothing";
+    EXPECT_GT(search.watched, 1000);
+    EXPECT_GT(search.median_smallest_m, none.median_smallest_m);
+  }
 }
 
 class CampaignFile : public ::testing::Test {
@@ -137,23 +141,6 @@ TEST_F(CampaignFile, RefusesWhatDoesNotBelongToIt) {
   std::ofstream(file) << "{\"campaign\": ";
   EXPECT_THAT(test::thrown_message([&] { (void)read_campaign_state(file, settings_of(plan, false)); }),
               HasSubstr("state.json: is no state of a campaign"));
-}
-
-TEST(LoopOnTheClock, DoesEveryPeriodAndTakesEveryFrame) {
-  AvoidanceSettings settings = small_images();
-  const LoopRecording recording(settings, 0.5, 1);
-  EXPECT_EQ(recording.frames(), 15U);
-  // There and back: the last period of the way there is the first of the way back.
-  EXPECT_EQ(recording.joints(249), recording.joints(250));
-  EXPECT_EQ(recording.joints(0), recording.joints(500));
-  const FreeRun free = run_free(recording, Method::search, LoopParts::nine_points, settings, 3, 10, {});
-  ASSERT_EQ(free.cycle_s.size(), 30U);
-  EXPECT_GT(*std::min_element(free.cycle_s.begin(), free.cycle_s.end()), 0);
-  const PacedRun paced =
-      run_paced(recording, LoopParts::link_capsules, settings, 0.4, {.nodes = 0, .time_s = 0.001}, [](double) {});
-  EXPECT_EQ(paced.periods.size(), 200U);
-  EXPECT_EQ(paced.frame_s.size(), 12U);
-  EXPECT_EQ(paced.answered, 200 * 6);
 }
 
 }  // namespace
