@@ -99,10 +99,10 @@ void build(const BuildOptions& options) {
       options.memory_gib ? static_cast<std::uint64_t>(*options.memory_gib * kGiB) : grid::available_memory_bytes();
   const grid::MapMemory memory = grid::estimate_map_memory(depth_grid, secondaries, storage);
   print_line(storage_text(storage) + " for " + std::to_string(secondaries.size()) +
-      (secondaries.size() == 1 ? " secondary camera needs " : " secondary cameras needs ") +
-      (memory.safety_factor > 1 ? "about " : "") + size_text(memory.bytes) + " of memory" +
-      (memory.safety_factor > 1 ? " (from a sample, times " + exact_text(memory.safety_factor) + ")" : "") + "; " +
-      size_text(*settings.memory_limit_bytes) + " allowed");
+             (secondaries.size() == 1 ? " secondary camera needs " : " secondary cameras needs ") +
+             (memory.safety_factor > 1 ? "about " : "") + size_text(memory.bytes) + " of memory" +
+             (memory.safety_factor > 1 ? " (from a sample, times " + exact_text(memory.safety_factor) + ")" : "") +
+             "; " + size_text(*settings.memory_limit_bytes) + " allowed");
 
   const auto begin = std::chrono::steady_clock::now();
   std::optional<ProgressLine> line;
@@ -118,7 +118,7 @@ void build(const BuildOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   grid::save_map(map, options.output);
   print_line(options.output + ": " + size_text(std::filesystem::file_size(options.output)) + ", built in " +
-      duration_text(seconds));
+             duration_text(seconds));
 }
 
 std::string camera_text(const PinholeCamera& camera) {
