@@ -15,8 +15,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kFrameRate = 30;
-
 /// One sensor's runs.
 struct Comparison {
   std::string sensor;

@@ -16,7 +16,7 @@ using simulation::Capsule;
 
 namespace {
 
-constexpr double kStep = 0.05;  // seconds between the instants that are looked at
+constexpr double kLookStep = 0.05;  // seconds between the instants that are looked at
 
 double axis_distance_m(const Capsule& capsule, const Eigen::Vector3d& p_world) {
   return robot::distance_to_axis({capsule.a_world, capsule.b_world, capsule.radius_m}, p_world);
@@ -106,8 +106,8 @@ AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3
   }
   double nearest_m = std::numeric_limits<double>::infinity();
   double nearest_s = 0;
-  for (int i = 0; i * kStep <= motion.duration_s; ++i) {
-    const double t = i * kStep;
+  for (int i = 0; i * kLookStep <= motion.duration_s; ++i) {
+    const double t = i * kLookStep;
     for (const Capsule& capsule : motion.at(t).capsules) {
       const double distance_m = axis_distance_m(capsule, p_world) - capsule.radius_m;
       if (distance_m < nearest_m) {
@@ -125,8 +125,8 @@ AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3
 
 bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig) {
   constexpr double kNear = 0.35;
-  for (int i = 0; motion.at && i * kStep <= motion.duration_s; ++i) {
-    for (const Capsule& capsule : motion.at(i * kStep).capsules) {
+  for (int i = 0; motion.at && i * kLookStep <= motion.duration_s; ++i) {
+    for (const Capsule& capsule : motion.at(i * kLookStep).capsules) {
       for (const RigCamera& camera : rig.cameras) {
         if (axis_distance_m(capsule, camera.T_world_camera.translation()) < kNear + capsule.radius_m) {
           return true;

@@ -13,7 +13,6 @@ namespace depthgrid::experiments {
 
 namespace {
 
-constexpr double kFrameRate = 30;
 constexpr double kApart = 0.02;           // a contact ends when robot and person are this far apart
 constexpr double kCoveredByPoint = 0.12;  // a control point stands for a link's surface at most this far away
 constexpr double kTolerance = 0.01;       // an over-estimate smaller than this is not counted

@@ -23,6 +23,7 @@ enum class ContactCause : std::uint8_t {
 };
 [[nodiscard]] std::string_view to_string(ContactCause cause) noexcept;
 inline constexpr double kStanding_m_s = 0.05;
+inline constexpr double kFrameRate = 30;  ///< of every camera, a second
 
 struct Contact {
   double time_s = 0;

@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kFrameRate = 30;
+constexpr double kPlayedRate = 30;
 constexpr double kLetter_s = 1.0 / 300;
 constexpr double kBudgetShare = 0.6;  // of the period, for the distances
 
@@ -182,7 +182,7 @@ void run_timing(const Options& options, ExperimentReport& report) {
   AvoidanceSettings settings;
   settings.width_px = width_or(options, 640, 640);
   settings.resolution_m = 0.005;
-  const double recorded_s = frames_or(options, 150, 45) / kFrameRate;
+  const double recorded_s = frames_or(options, 150, 45) / kPlayedRate;
   const double paced_s = options.quick ? 10 : 60;
   const int snapshots = options.quick ? 10 : 40;
   const int cycles = options.quick ? 64 : 128;
