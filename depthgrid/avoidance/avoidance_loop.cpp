@@ -39,7 +39,8 @@ AvoidanceLoop::AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory
 
 bool AvoidanceLoop::start(control::RobotPort& port) noexcept {
   cycles_ = 0;
-  return port.read(state_) && controller_.start(state_);
+  started_ = port.read(state_) && controller_.start(state_);
+  return started_;
 }
 
 void AvoidanceLoop::jacobian(std::size_t link, const Eigen::Vector3d& p_world,
@@ -61,9 +62,13 @@ void AvoidanceLoop::evaluate(double now_s) noexcept {
 }
 
 bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
+  if (!started_) {
+    return false;
+  }
   bool working = port.read(state_);
   const std::span<const double> q(state_.position_rad.data(), static_cast<std::size_t>(state_.position_rad.size()));
-  working = history_.add(now_s, q) && working;
+  // Where the joints were a period ago says nothing about this time: the history then rather has a gap.
+  working = working && history_.add(now_s, q);
   working = model_.link_poses(q, settings_.T_world_base, T_world_link_) && working;
   place(settings_.parts, T_world_link_, parts_world_);
   evaluate(now_s);

@@ -43,11 +43,13 @@ class AvoidanceLoop {
   AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory& history, DistanceSource& source,
                 const LoopSettings& settings);
 
-  /// Takes the robot's state as the beginning. False when there is none or it is not finite.
-  bool start(control::RobotPort& port) noexcept;
+  /// Takes the robot's state as the beginning. False when there is none or it is not finite: cycle() then does nothing.
+  [[nodiscard]] bool start(control::RobotPort& port) noexcept;
 
   /// One period at time `now_s`, on the clock of cameras and joint history. False when the robot gave no state or did
-  /// not take the command; without a state the last one is used again.
+  /// not take the command, or the history did not take the time. Without a state distances and Jacobians are those of
+  /// the last one, and the history gets no sample. Unless the last start() succeeded it writes nothing and returns
+  /// false.
   bool cycle(control::RobotPort& port, double now_s) noexcept;
 
   [[nodiscard]] const CycleReport& report() const noexcept { return report_; }
@@ -67,6 +69,7 @@ class AvoidanceLoop {
   LoopSettings settings_;
   control::Controller controller_;
   control::PolygonTask task_;
+  bool started_ = false;
   std::int64_t cycles_ = 0;
   control::JointState state_;
   std::vector<Pose> T_world_link_;

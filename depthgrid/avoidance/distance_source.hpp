@@ -29,7 +29,8 @@ class DistanceSource {
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
 
   /// The newest image of every camera, in the rig's order. The buffers need not outlive the call. False when one could
-  /// not be used; that camera then has seen nothing.
+  /// not be used: that camera then has seen nothing; or, with the search, when held snapshots left no room for it: then
+  /// its image before stays the newest.
   virtual bool take(std::span<const Frame> frames) noexcept = 0;
 
   /// parts_world and answers have the same size; `now_s` is on the frames' clock.

@@ -1,8 +1,28 @@
 #include "depthgrid/avoidance/search_distances.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace depthgrid::avoidance {
+
+namespace {
+
+/// A quarter for the end effector, the rest for the others. 0 means no limit, so what has one keeps at least a node.
+search::Budget share_of(const search::Budget& budget, bool end_effector) noexcept {
+  if (end_effector) {
+    return {budget.nodes > 0 ? std::max<std::int64_t>(1, budget.nodes / 4) : 0, budget.time_s / 4};
+  }
+  return {budget.nodes > 0 ? std::max<std::int64_t>(1, budget.nodes - std::max<std::int64_t>(1, budget.nodes / 4)) : 0,
+          budget.time_s - budget.time_s / 4};
+}
+
+/// NaN stays NaN, and what lies further in the future than kClockTolerance_s becomes NaN: nothing is known then.
+double age_of_images_s(double now_s, double reference_time_s) noexcept {
+  const double age_s = now_s - reference_time_s;
+  return age_s >= -kClockTolerance_s ? std::abs(age_s) : Proximity::kNaN;
+}
+
+}  // namespace
 
 SearchDistances::SearchDistances(const Rig& rig, const search::Settings& settings, std::size_t parts,
                                  const search::Budget& budget)
@@ -21,15 +41,16 @@ void SearchDistances::evaluate(std::span<const search::Primitive> parts_world, d
   const std::size_t count = std::min({parts_world.size(), answers.size(), found_.size()});
   const search::Snapshot snapshot = store_.snapshot();
   const std::size_t led = std::min<std::size_t>(1, count);
-  const search::Budget of_first{budget_.nodes / 4, budget_.time_s / 4};
-  const search::Budget of_others{budget_.nodes - of_first.nodes, budget_.time_s - of_first.time_s};
-  search_.hybrid(snapshot, parts_world.first(led), std::span(found_).first(led), of_first);
+  search_.hybrid(snapshot, parts_world.first(led), std::span(found_).first(led), share_of(budget_, true));
   search_.distances(snapshot, parts_world.subspan(led, count - led), std::span(found_).subspan(led, count - led),
-                    of_others);
-  const double age_s = std::max(0.0, now_s - snapshot.reference_time_s());
+                    share_of(budget_, false));
+  const double age_s = age_of_images_s(now_s, snapshot.reference_time_s());
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (i >= count) {
       answers[i] = PartAnswer{};
+      if (i < parts_world.size()) {
+        answers[i].at_world = parts_world[i].a_world;
+      }
       continue;
     }
     const search::Answer& found = found_[i];

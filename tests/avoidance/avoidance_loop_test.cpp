@@ -43,6 +43,69 @@ TEST_F(Loop, RefusesSettingsThatDoNotFit) {
   EXPECT_THAT(refused(bad), HasSubstr("every 0 periods"));
 }
 
+/// An arm that can be told to fail. Counts the commands.
+class FailingArm final : public control::RobotPort {
+ public:
+  explicit FailingArm(control::SimulatedArm& arm) : arm_(arm) {}
+  bool read(control::JointState& state) noexcept override { return readable && arm_.read(state); }
+  bool write(const control::JointCommand& command) noexcept override {
+    ++written;
+    return arm_.write(command);
+  }
+  bool readable = true;
+  int written = 0;
+
+ private:
+  control::SimulatedArm& arm_;
+};
+
+TEST_F(Loop, CommandsNothingBeforeAStartThatSucceeded) {
+  const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
+  AvoidanceLoop loop(model_, history_, nothing_, settings);
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  FailingArm port(arm);
+  EXPECT_FALSE(loop.cycle(port, 0)) << "never started";
+  port.readable = false;
+  EXPECT_FALSE(loop.start(port));
+  port.readable = true;
+  EXPECT_FALSE(loop.cycle(port, kPeriod)) << "the start failed";
+  EXPECT_EQ(port.written, 0);
+  std::vector<double> q(7);
+  EXPECT_EQ(history_.at(kPeriod, q).answer, robot::JointAnswer::no_samples);
+
+  ASSERT_TRUE(loop.start(port));
+  EXPECT_TRUE(loop.cycle(port, 2 * kPeriod));
+  EXPECT_EQ(port.written, 1);
+  EXPECT_LT((loop.report().output.command.position_rad - test::bent()).norm(), 0.01);
+
+  // A second start that fails ends the first.
+  port.readable = false;
+  EXPECT_FALSE(loop.start(port));
+  port.readable = true;
+  EXPECT_FALSE(loop.cycle(port, 3 * kPeriod));
+  EXPECT_EQ(port.written, 1);
+}
+
+TEST_F(Loop, AddsNoPositionToTheHistoryWithoutAState) {
+  const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
+  robot::JointHistory history(7, 256, 1.5 * kPeriod, 0.0);  // a missing sample leaves a gap
+  AvoidanceLoop loop(model_, history, nothing_, settings);
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  FailingArm port(arm);
+  ASSERT_TRUE(loop.start(port));
+  std::vector<double> q(7);
+  for (int k = 0; k < 10; ++k) {
+    port.readable = k != 5;
+    EXPECT_EQ(loop.cycle(port, k * kPeriod), k != 5) << k;
+    EXPECT_EQ(port.written, k + 1) << "it goes on commanding";
+    EXPECT_EQ(history.at(k * kPeriod, q).known(), k != 5) << k;
+    arm.advance();
+  }
+  EXPECT_EQ(history.at(4.5 * kPeriod, q).answer, robot::JointAnswer::gap);
+  EXPECT_EQ(history.at(5 * kPeriod, q).answer, robot::JointAnswer::gap);
+  EXPECT_TRUE(history.at(6 * kPeriod, q).known());
+}
+
 TEST_F(Loop, FollowsTheHexagonWithNothingNear) {
   const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
   AvoidanceLoop loop(model_, history_, nothing_, settings);

@@ -67,6 +67,8 @@ TEST(GridDistances, WithoutAnImageKnowNothingToBeFree) {
   GridDistances source(rig, letter_settings(RobotPixels::removed));
   const Frame none;
   EXPECT_FALSE(source.take({&none, 1}));
+  const PartAnswer answer = asked(source, kInRobot, 0);
+  EXPECT_EQ(answer.obstacle.distance_m.value_or(0), 0);
 }
 
 TEST(SearchDistances, SubtractWhatMayHaveComeNearer) {
@@ -81,6 +83,49 @@ TEST(SearchDistances, SubtractWhatMayHaveComeNearer) {
   EXPECT_NEAR(*fresh.obstacle.distance_m, 0.3, 0.06);
   EXPECT_NEAR(*fresh.obstacle.distance_m - *later.obstacle.distance_m, 2 * 0.05, 1e-9);
   EXPECT_EQ(fresh.nearest.distance_m, later.nearest.distance_m);
+}
+
+TEST(SearchDistances, KnowNothingAtATimeThatDoesNotFitTheImages) {
+  const Rig rig = test::one_camera();
+  SearchDistances source(rig, test::search_settings(rig), 1);
+  const std::vector<float> wall(kWidth * kHeight, 2.3F);
+  const auto at_age = [&](double exposed_s, double age_s) {
+    const Frame frame{depth_view(wall, kWidth, kHeight), {}, exposed_s};
+    EXPECT_TRUE(source.take({&frame, 1}));
+    return asked(source, kInRobot, 5.0 + age_s).obstacle.distance_m;
+  };
+  const auto fresh = at_age(5.0, 0);
+  ASSERT_TRUE(fresh);
+  EXPECT_GT(*fresh, 0.2);
+  // A little in the future: as old as it is young.
+  const auto ahead = at_age(5.0, -0.003);
+  ASSERT_TRUE(ahead);
+  EXPECT_NEAR(*ahead, *fresh - 2 * 0.003, 1e-9);
+  EXPECT_FALSE(at_age(5.0, -0.006));
+  EXPECT_FALSE(at_age(5.0, -1.0));
+  EXPECT_FALSE(at_age(5.0, Proximity::kNaN));
+  EXPECT_FALSE(at_age(Proximity::kNaN, 0)) << "an image without a time";
+}
+
+TEST(SearchDistances, AreUnknownWithoutAnImage) {
+  const Rig rig = test::one_camera();
+  SearchDistances source(rig, test::search_settings(rig), 1);
+  EXPECT_FALSE(asked(source, kInRobot, 0).obstacle.distance_m);
+}
+
+TEST(SearchDistances, KeepTheirBudgetHoweverSmallItIs) {
+  const Rig rig = test::one_camera();
+  const RobotBeforeWall scene;
+  const Frame frame = scene.frame(0);
+  const std::array<search::Primitive, 2> parts{search::point(kInRobot), search::point(kInRobot)};
+  for (std::int64_t nodes = 1; nodes <= 5; ++nodes) {
+    SearchDistances source(rig, test::search_settings(rig), 2, {.nodes = nodes, .time_s = 0});
+    ASSERT_TRUE(source.take({&frame, 1}));
+    std::array<PartAnswer, 2> answers;
+    source.evaluate(parts, 0, answers);
+    EXPECT_TRUE(answers[0].nearest.budget) << nodes;
+    EXPECT_TRUE(answers[1].nearest.budget) << nodes;
+  }
 }
 
 TEST(SearchDistances, CountAnswersThatABudgetEnded) {
@@ -103,6 +148,7 @@ TEST(SearchDistances, AnswerNoMoreThanTheyHaveRoomFor) {
   source.evaluate(parts, 0, answers);
   EXPECT_EQ(answers[1].nearest.state, ProximityState::not_evaluated);
   EXPECT_FALSE(answers[1].obstacle.distance_m);
+  EXPECT_EQ(answers[1].at_world, kInRobot);
 }
 
 }  // namespace
