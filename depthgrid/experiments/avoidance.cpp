@@ -140,8 +140,9 @@ ordered_json figures_of(const RunResult& run) {
       {"s_per_vertex", run.vertices > 0 ? ordered_json(run.duration_s / run.task_share) : ordered_json(nullptr)},
       {"stopped_s", run.stopped_s},
       {"stopped_with_nothing_within_rho_s", run.false_stop_s},
+      {"object_contacts", run.object_contacts},
       {"over_estimates", run.over_estimates},
-      {"periods_with_person_within_rho", run.watched}};
+      {"periods_compared", run.compared}};
   for (const Contact& contact : run.contacts) {
     entry["contact_causes"].push_back(to_string(contact.cause));
   }
@@ -177,17 +178,6 @@ void report_comparison(const Comparison& comparison, const std::vector<Eigen::Ve
       "over-time-" + comparison.sensor + ".png", picture_over_time(comparison),
       "Distances and repulsion over time. The letter's distances are those of points on the links' axes, the "
       "search's those of the links' surfaces, less what may have come nearer since the exposure.");
-}
-
-/// The person with the box who comes nearest to where the arm works, of ten.
-AvoidanceMotion carrying_person(const Rig& rig, double duration_s, std::uint64_t first_seed) {
-  const simulation::PersonStage stage = avoidance_stage(rig);
-  for (std::uint64_t seed = first_seed;; ++seed) {
-    const AvoidanceMotion motion = scripted_motion(simulation::Motion::carry_box, stage, seed);
-    if (!meets_a_camera(motion, rig)) {
-      return nearest_part(motion, stage.robot_world, duration_s);
-    }
-  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/capsule.hpp"
 
 namespace depthgrid::experiments {
@@ -135,6 +136,18 @@ bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig) {
     }
   }
   return false;
+}
+
+AvoidanceMotion carrying_person(const Rig& rig, double duration_s, std::uint64_t first_seed) {
+  constexpr std::uint64_t kTried = 100;
+  const simulation::PersonStage stage = avoidance_stage(rig);
+  for (std::uint64_t i = 0; i < kTried; ++i) {
+    const AvoidanceMotion motion = scripted_motion(simulation::Motion::carry_box, stage, first_seed + i);
+    if (!meets_a_camera(motion, rig)) {
+      return nearest_part(motion, stage.robot_world, duration_s);
+    }
+  }
+  fail("seed ", first_seed, ": each of ", kTried, " persons with a box walks through a camera; give another seed");
 }
 
 }  // namespace depthgrid::experiments

@@ -50,6 +50,10 @@ struct AvoidanceMotion {
 [[nodiscard]] AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3d& p_world,
                                            double duration_s);
 
+/// The nearest `duration_s` of the first person with a box, seeds from `first_seed` on, who walks through no camera.
+/// Throws Error when the first hundred all do.
+[[nodiscard]] AvoidanceMotion carrying_person(const Rig& rig, double duration_s, std::uint64_t first_seed);
+
 /// Whether any of it comes within 0.35 m of a camera: people do not walk through cameras.
 [[nodiscard]] bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig);
 

@@ -7,6 +7,7 @@
 
 #include "depthgrid/avoidance/frame_intake.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/simulation/simulated_sensors.hpp"
 
 namespace depthgrid::experiments {
@@ -24,6 +25,13 @@ struct Exposure {
   std::vector<DepthImage> measured_m;
   std::vector<DepthView> views;
 };
+
+/// In simulated time nothing may fail: what follows a failure would be measured as if it were the method's.
+void need(bool done, const char* what, double time_s) {
+  if (!done) {
+    fail("simulated run: ", what, " failed at ", time_s, " s");
+  }
+}
 
 /// One run while it goes on.
 class Run {
@@ -44,13 +52,13 @@ class Run {
         sensors_(rig_, {.seed = settings.seed}) {}
 
   RunResult result() {
-    (void)loop_.start(arm_);
+    need(loop_.start(arm_), "the loop's start", 0);
     const auto periods = static_cast<std::int64_t>(std::llround(settings_.duration_s / common_.period_s));
     // The first images are there before the arm moves.
     place_at_rest();
     for (std::int64_t k = 0; k < periods; ++k) {
       const double time_s = static_cast<double>(k) * common_.period_s;
-      (void)loop_.cycle(arm_, time_s);
+      need(loop_.cycle(arm_, time_s), "the loop's cycle", time_s);
       cell_.update(time_s, loop_.T_world_link());
       watch(k, time_s);
       expose(k, time_s);
@@ -70,8 +78,8 @@ class Run {
     const control::JointVector q = start_rad();
     const std::span<const double> joints(q.data(), static_cast<std::size_t>(q.size()));
     std::vector<Pose> T_world_link(model_.links().size(), Pose::Identity());
-    (void)model_.link_poses(joints, Pose::Identity(), T_world_link);
-    (void)history_.add(-common_.period_s, joints);
+    need(model_.link_poses(joints, Pose::Identity(), T_world_link), "the arm's pose", 0);
+    need(history_.add(-common_.period_s, joints), "the first entry of the joint history", 0);
     cell_.update(0, T_world_link);
     shoot(-common_.period_s);
     deliver(std::numeric_limits<double>::infinity());
@@ -109,7 +117,7 @@ class Run {
         exposure.views.push_back(depth_view(std::span(image.data(), image.index(0, image.height_px())),
                                             image.width_px(), image.height_px()));
       }
-      (void)source_->take(intake_.frames(exposure.views, exposure.time_s));
+      need(source_->take(intake_.frames(exposure.views, exposure.time_s)), "taking the images", exposure.time_s);
       on_the_way_.pop_front();
     }
   }
@@ -137,7 +145,6 @@ class Run {
     const double person_m = person ? person->distance_m : std::numeric_limits<double>::infinity();
     const double object_m = object ? object->distance_m : std::numeric_limits<double>::infinity();
     result_.smallest_person_m = std::min(result_.smallest_person_m, person_m);
-    result_.smallest_object_m = std::min(result_.smallest_object_m, object_m);
     result_.object_contacts += object_m <= 0 && object_before_m_ > 0 ? 1 : 0;
     object_before_m_ = object_m;
     if (k > 0 && speed_m_s < kSlowShare * loop_settings_.task.speed_m_s) {
@@ -158,14 +165,12 @@ class Run {
   }
 
   void watch_person(double time_s, const TrueDistance& person) {
-    if (person.distance_m < common_.rho_m) {
-      ++result_.watched;
-      const std::optional<double> told_m = told_of_link_m(person.link);
-      if (is_search(method_) && told_m) {
-        const double over_m = *told_m - person.distance_m;
-        result_.over_estimates += over_m > kTolerance ? 1 : 0;
-        result_.largest_over_estimate_m = std::max(result_.largest_over_estimate_m, over_m);
-      }
+    const std::optional<double> told_m = told_of_link_m(person.link);
+    if (person.distance_m < common_.rho_m && is_search(method_) && told_m) {
+      ++result_.compared;
+      const double over_m = *told_m - person.distance_m;
+      result_.over_estimates += over_m > kTolerance ? 1 : 0;
+      result_.largest_over_estimate_m = std::max(result_.largest_over_estimate_m, over_m);
     }
     if (person.distance_m <= 0) {
       result_.in_contact_s += common_.period_s;
@@ -173,11 +178,17 @@ class Run {
         result_.contacts.push_back(contact(time_s));
       }
       touching_ = true;
+      note_speed_in_contact();
     } else {
       touching_ = touching_ && person.distance_m < kApart;
       before_ = person;
-      before_told_m_ = told_of_link_m(person.link);
-      speed_before_m_s_ = robot_speed_m_s(person);
+      before_told_m_ = told_m;
+      on_link_before_ = loop_.T_world_link()[person.link].inverse(Eigen::Isometry) * person.on_robot_world;
+      direction_before_ = (person.on_obstacle_world - person.on_robot_world).normalized();
+      speed_before_m_s_ = robot_speed_m_s();
+      if (touching_) {
+        note_speed_in_contact();
+      }
       closing_before_m_s_ = closing_m_s(person.distance_m);
       distance_before_m_ = person.distance_m;
     }
@@ -189,15 +200,23 @@ class Run {
     return command.position_rad - common_.period_s * command.velocity_rad_s;
   }
 
-  /// How fast the nearest point of the robot moves towards the person.
-  [[nodiscard]] double robot_speed_m_s(const TrueDistance& person) {
+  /// How fast the point of the robot that was nearest when last there was a distance moves along the line of then.
+  [[nodiscard]] double robot_speed_m_s() const {
     const control::JointCommand& command = loop_.report().output.command;
     const control::JointVector q = joints_now();
     robot::Jacobian jacobian = robot::Jacobian::Zero(6, q.size());
-    (void)model_.jacobian({q.data(), static_cast<std::size_t>(q.size())}, loop_.T_world_link(), person.link,
-                          person.on_robot_world, jacobian);
+    const Eigen::Vector3d p_world = loop_.T_world_link()[before_->link] * on_link_before_;
+    (void)model_.jacobian({q.data(), static_cast<std::size_t>(q.size())}, loop_.T_world_link(), before_->link, p_world,
+                          jacobian);
     const Eigen::Vector3d velocity_m_s = jacobian.topRows<3>() * command.velocity_rad_s;
-    return velocity_m_s.dot((person.on_obstacle_world - person.on_robot_world).normalized());
+    return velocity_m_s.dot(direction_before_);
+  }
+
+  void note_speed_in_contact() {
+    if (before_) {
+      std::optional<double>& fastest_m_s = result_.contacts.back().fastest_during_m_s;
+      fastest_m_s = std::max(fastest_m_s.value_or(0), robot_speed_m_s());
+    }
   }
 
   [[nodiscard]] double closing_m_s(double distance_m) const {
@@ -208,7 +227,8 @@ class Run {
     Contact contact;
     contact.time_s = time_s;
     if (!before_) {
-      return contact;  // touched from the beginning
+      contact.cause = ContactCause::touched_from_the_start;
+      return contact;
     }
     contact.link = before_->link;
     contact.robot_m_s = speed_before_m_s_;
@@ -259,6 +279,8 @@ class Run {
   bool touching_ = false;
   std::optional<TrueDistance> before_;
   std::optional<double> before_told_m_;
+  Eigen::Vector3d on_link_before_ = Eigen::Vector3d::Zero();    // the nearest point, in its link's frame
+  Eigen::Vector3d direction_before_ = Eigen::Vector3d::Zero();  // from it to the person, world frame
   double speed_before_m_s_ = 0;
   double closing_before_m_s_ = 0;
   double distance_before_m_ = std::numeric_limits<double>::infinity();
@@ -276,6 +298,8 @@ std::string_view to_string(ContactCause cause) noexcept {
       return "hidden";
     case ContactCause::robot_came:
       return "robot_came";
+    case ContactCause::touched_from_the_start:
+      return "touched_from_the_start";
   }
   return "unknown";
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include "depthgrid/core/error.hpp"
@@ -44,14 +45,17 @@ class Work {
 
   void run() {
     const int threads = std::clamp(plan_.threads, 1, 64);
-    std::vector<std::thread> others;
-    others.reserve(static_cast<std::size_t>(threads) - 1);
-    for (int i = 1; i < threads; ++i) {
-      others.emplace_back([this] { work(false); });
-    }
-    work(true);
-    for (std::thread& thread : others) {
-      thread.join();
+    {
+      // Stopped and joined, too, when this thread leaves by an exception.
+      std::vector<std::jthread> others;
+      others.reserve(static_cast<std::size_t>(threads) - 1);
+      for (int i = 1; i < threads; ++i) {
+        others.emplace_back([this](const std::stop_token& stop) { work(stop, false); });
+      }
+      work({}, true);
+      for (std::jthread& thread : others) {
+        thread.join();
+      }
     }
     if (error_) {
       std::rethrow_exception(error_);
@@ -61,8 +65,8 @@ class Work {
 
  private:
   /// Only the calling thread shows progress.
-  void work(bool shows_progress) {
-    for (;;) {
+  void work(const std::stop_token& stop, bool shows_progress) {
+    while (!stop.stop_requested()) {
       int number = 0;
       {
         const std::lock_guard lock(mutex_);
@@ -128,9 +132,17 @@ nlohmann::ordered_json settings_of(const CampaignPlan& plan, bool with_recording
           {"width_px", plan.common.width_px},
           {"sensor", plan.common.sensor},
           {"frame_latency_s", plan.common.frame_latency_s},
+          {"period_s", plan.common.period_s},
+          {"rho_m", plan.common.rho_m},
+          {"repulsion_m_s", plan.common.repulsion_m_s},
           {"v_max_m_s", plan.common.v_max_m_s},
           {"ignored_pocket_m", plan.common.ignored_pocket_m},
+          {"resolution_m", plan.common.resolution_m},
+          {"approach_gain_per_s", plan.common.approach_gain_per_s},
+          {"approach_stop_m", plan.common.approach_stop_m},
+          {"removal_padding_m", plan.common.removal_padding_m},
           {"evaluate_every", plan.common.evaluate_every},
+          {"program", "depthgrid " DEPTHGRID_VERSION},
           {"recordings", with_recordings}};
 }
 

@@ -6,6 +6,14 @@ namespace depthgrid::experiments {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr std::string_view kRecorded = "mocap ";
+
+}  // namespace
+
+bool is_recorded(std::string_view name) noexcept { return name.starts_with(kRecorded); }
+
 fs::path mocap_folder() {
   const char* data = std::getenv("DEPTHGRID_DATA");  // NOLINT(concurrency-mt-unsafe): nobody changes the environment
   return fs::path(data != nullptr ? data : "../shared/data") / "mocap_cmu";
@@ -31,10 +39,11 @@ AvoidanceMotion CampaignMotions::motion(int number) const {
   constexpr std::uint64_t kOthers = 1000;
   for (std::uint64_t other = 0;; ++other) {
     const std::uint64_t seed = (seed_ * 1'000'000 + round) * kOthers + other;
-    AvoidanceMotion motion = kind < scripts.size()
-                                 ? scripted_motion(scripts[kind], stage_, seed)
-                                 : recorded_motion(clips_[round % clips_.size()].clip,
-                                                   "mocap " + clips_[round % clips_.size()].name, stage_, seed);
+    AvoidanceMotion motion =
+        kind < scripts.size()
+            ? scripted_motion(scripts[kind], stage_, seed)
+            : recorded_motion(clips_[round % clips_.size()].clip,
+                              std::string(kRecorded) + clips_[round % clips_.size()].name, stage_, seed);
     if (!meets_a_camera(motion, rig_) || other + 1 == kOthers) {
       return nearest_part(motion, stage_.robot_world, duration_s_);
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "depthgrid/experiments/avoidance_motion.hpp"
@@ -32,6 +33,9 @@ class CampaignMotions {
   double duration_s_;
   std::vector<Clip> clips_;
 };
+
+/// Whether a motion of this name is a recorded one.
+[[nodiscard]] bool is_recorded(std::string_view name) noexcept;
 
 /// DEPTHGRID_DATA or ../shared/data, and mocap_cmu in it.
 [[nodiscard]] std::filesystem::path mocap_folder();

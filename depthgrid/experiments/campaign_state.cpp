@@ -23,8 +23,7 @@ double number(const ordered_json& value) {
 }
 
 ContactCause cause(const std::string& name) {
-  for (const ContactCause one :
-       {ContactCause::robot_stood, ContactCause::faster_than_v_max, ContactCause::hidden, ContactCause::robot_came}) {
+  for (const ContactCause one : kContactCauses) {
     if (to_string(one) == name) {
       return one;
     }
@@ -39,6 +38,8 @@ ordered_json to_json(const Contact& contact) {
           {"person_m_s", contact.person_m_s},
           {"told_m", contact.told_m ? ordered_json(*contact.told_m) : ordered_json(nullptr)},
           {"really_m", contact.really_m},
+          {"fastest_during_m_s",
+           contact.fastest_during_m_s ? ordered_json(*contact.fastest_during_m_s) : ordered_json(nullptr)},
           {"cause", to_string(contact.cause)}};
 }
 
@@ -52,6 +53,9 @@ Contact contact_of(const ordered_json& json) {
     contact.told_m = json.at("told_m").get<double>();
   }
   contact.really_m = json.at("really_m");
+  if (!json.at("fastest_during_m_s").is_null()) {
+    contact.fastest_during_m_s = json.at("fastest_during_m_s").get<double>();
+  }
   contact.cause = cause(json.at("cause"));
   return contact;
 }
@@ -64,7 +68,7 @@ ordered_json to_json(const RunSummary& run) {
                     {"false_stop_s", run.false_stop_s},
                     {"over_estimates", run.over_estimates},
                     {"largest_over_estimate_m", run.largest_over_estimate_m},
-                    {"watched", run.watched},
+                    {"compared", run.compared},
                     {"object_contacts", run.object_contacts}};
   json["contacts"] = ordered_json::array();
   for (const Contact& contact : run.contacts) {
@@ -82,7 +86,7 @@ RunSummary summary_from(const ordered_json& json) {
   run.false_stop_s = json.at("false_stop_s");
   run.over_estimates = json.at("over_estimates");
   run.largest_over_estimate_m = json.at("largest_over_estimate_m");
-  run.watched = json.at("watched");
+  run.compared = json.at("compared");
   run.object_contacts = json.at("object_contacts");
   for (const ordered_json& contact : json.at("contacts")) {
     run.contacts.push_back(contact_of(contact));
@@ -100,7 +104,7 @@ RunSummary summary_of(const RunResult& result) {
           result.false_stop_s,
           result.over_estimates,
           result.largest_over_estimate_m,
-          result.watched,
+          result.compared,
           result.object_contacts,
           result.contacts};
 }

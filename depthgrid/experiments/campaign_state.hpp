@@ -20,7 +20,7 @@ struct RunSummary {
   double false_stop_s = 0;
   std::int64_t over_estimates = 0;
   double largest_over_estimate_m = 0;
-  std::int64_t watched = 0;
+  std::int64_t compared = 0;
   int object_contacts = 0;
   std::vector<Contact> contacts;
 };

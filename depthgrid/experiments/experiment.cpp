@@ -39,7 +39,7 @@ const Experiment& experiment(std::string_view name) {
 
 std::string run_experiment(const Experiment& experiment, const Options& options) {
   validate(options);
-  ExperimentReport report(experiment.name, options);
+  ExperimentReport report(experiment, options);
   experiment.run(options, report);
   report.write();
   return report.text();

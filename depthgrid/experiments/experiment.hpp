@@ -39,6 +39,7 @@ struct Experiment {
   std::string_view summary;  ///< one line
   /// Fills the report, which the caller writes. Throws Error.
   void (*run)(const Options& options, ExperimentReport& report);
+  std::string_view cores_used = "one";  ///< for the report
 };
 
 /// In the order of --list.

@@ -60,19 +60,20 @@ void write_text(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-ExperimentReport::ExperimentReport(std::string_view experiment, const Options& options) : folder_(options.out) {
+ExperimentReport::ExperimentReport(const Experiment& experiment, const Options& options) : folder_(options.out) {
   check_folder(folder_);
-  about_["experiment"] = experiment;
+  about_["experiment"] = experiment.name;
+  about_["program"] = "depthgrid " DEPTHGRID_VERSION;
   about_["command"] = options.command_line;
   about_["seed"] = options.seed;
   about_["quick"] = options.quick;
   about_["started"] = now_utc();
-  about_["machine"] = report::machine_line();
-  markdown_ = "# " + std::string(experiment) + "\n";
+  about_["machine"] = report::machine_line(experiment.cores_used);
+  markdown_ = "# " + std::string(experiment.name) + "\n";
   if (!options.command_line.empty()) {
     paragraph("`" + options.command_line + "`, " + now_utc() + (options.quick ? ", a quick run." : "."));
   }
-  paragraph("Machine: " + report::machine_line() + ".");
+  paragraph("Machine: " + report::machine_line(experiment.cores_used) + ".");
 }
 
 void ExperimentReport::paragraph(std::string_view markdown) { markdown_.append("\n").append(markdown).append("\n"); }

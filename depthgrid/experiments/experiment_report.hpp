@@ -18,7 +18,7 @@ namespace depthgrid::experiments {
 class ExperimentReport {
  public:
   /// Throws Error when options.out is a file, cannot be written, or has no parent folder. Creates nothing.
-  ExperimentReport(std::string_view experiment, const Options& options);
+  ExperimentReport(const Experiment& experiment, const Options& options);
 
   /// The measured figures: an object with one entry a subject, units in the names.
   [[nodiscard]] nlohmann::ordered_json& figures() noexcept { return figures_; }

@@ -9,9 +9,11 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <stop_token>
 #include <thread>
 
 #include "depthgrid/avoidance/frame_intake.hpp"
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/experiments/processor_time.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 
@@ -93,6 +95,21 @@ struct Parts {
         loop(model, history, timed, loop_settings),
         arm(recording) {}
 
+  /// Throws Error, as nothing of a recording can fail.
+  void start() {
+    if (!loop.start(arm)) {
+      fail("timing: the loop does not start at the recorded joint positions");
+    }
+  }
+
+  /// The images of one exposure with the joint positions of then, before any cycle at that time. Throws Error.
+  void take(const control::JointVector& q, std::span<const DepthView> views, double exposed_s) {
+    if (!history.add(exposed_s, {q.data(), static_cast<std::size_t>(q.size())}) ||
+        !timed.take(intake.frames(views, exposed_s))) {
+      fail("timing: the images of ", exposed_s, " s are not taken");
+    }
+  }
+
   robot::RobotModel model;
   avoidance::LoopSettings loop_settings;
   robot::JointHistory history;
@@ -109,27 +126,30 @@ FreeRun run_free(const LoopRecording& recording, Method method, LoopParts parts,
                  int snapshots, int cycles, const search::Budget& budget) {
   FreeRun result;
   Parts all(recording, method, parts, settings, budget);
-  (void)all.loop.start(all.arm);
+  all.start();
   double now_s = 0;
   for (int i = 0; i < snapshots; ++i) {
     const auto frame = static_cast<std::size_t>(i) * recording.frames() / static_cast<std::size_t>(snapshots);
     const std::int64_t period = recording.period_of(frame);
-    // The history's clock only goes forward.
-    now_s += 1.0;
-    const control::JointVector& q = recording.joints(period);
-    (void)all.history.add(now_s, {q.data(), static_cast<std::size_t>(q.size())});
-    (void)all.timed.take(all.intake.frames(recording.views(frame), now_s));
     for (int c = 0; c < cycles; ++c) {
-      // The frame is used for the next two frame periods, as an image in the loop is.
+      // The frame is used for the next two frame periods, as an image in the loop is, and is then taken anew: time only
+      // goes forward.
       const std::int64_t later = c % 32 + 1;
+      if (later == 1) {
+        now_s += 1.0;
+        all.take(recording.joints(period), recording.views(frame), now_s);
+      }
       all.arm.set_period(period + later);
-      const double at_s = now_s + recording.period_s() * static_cast<double>(later) + 1e-9 * c;
+      const double at_s = now_s + recording.period_s() * static_cast<double>(later);
       const auto begin = Clock::now();
       const double begin_s = processor_time_s();
-      (void)all.loop.cycle(all.arm, at_s);
+      const bool done = all.loop.cycle(all.arm, at_s);
       result.cycle_s.push_back(processor_time_s() - begin_s);
       result.wall_s += seconds(Clock::now() - begin);
       result.evaluate_s += all.timed.evaluate_s();
+      if (!done) {
+        fail("timing: the cycle at ", at_s, " s failed");
+      }
     }
   }
   return result;
@@ -139,33 +159,34 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
                    double duration_s, const search::Budget& budget, const std::function<void(double)>& progress) {
   PacedRun result;
   Parts all(recording, Method::search, parts, settings, budget);
-  (void)all.loop.start(all.arm);
+  all.start();
   // The first images are there before the first cycle.
-  const control::JointVector& q = recording.joints(recording.period_of(0));
-  (void)all.history.add(-recording.period_s(), {q.data(), static_cast<std::size_t>(q.size())});
-  (void)all.timed.take(all.intake.frames(recording.views(0), -recording.period_s()));
+  all.take(recording.joints(recording.period_of(0)), recording.views(0), -recording.period_s());
   const auto periods = static_cast<std::int64_t>(std::llround(duration_s / recording.period_s()));
   result.periods.resize(static_cast<std::size_t>(periods));
+  result.frame_s.reserve(recording.frames() + static_cast<std::size_t>(std::max(0.0, duration_s) * kFrameRate));
   const Clock::time_point begin = Clock::now() + std::chrono::milliseconds(100);
   const auto time_of = [&](std::int64_t period) {
     return begin + ticks(static_cast<double>(period) * recording.period_s());
   };
   std::atomic<bool> taking{false};
 
-  std::thread control([&] {
+  // Stopped and joined, too, when this thread leaves by an exception.
+  std::jthread control([&](const std::stop_token& stop) {
     const RealTimePriority priority;
     result.real_time_priority = priority.granted();
-    for (std::int64_t k = 0; k < periods; ++k) {
+    for (std::int64_t k = 0; k < periods && !stop.stop_requested(); ++k) {
       std::this_thread::sleep_until(time_of(k));
       PeriodTimes& times = result.periods[static_cast<std::size_t>(k)];
       const auto start = Clock::now();
       const double processor_s = processor_time_s();
       all.arm.set_period(k);
-      (void)all.loop.cycle(all.arm, static_cast<double>(k) * recording.period_s());
+      const bool done = all.loop.cycle(all.arm, static_cast<double>(k) * recording.period_s());
       times.processor_s = processor_time_s() - processor_s;
       times.took_s = seconds(Clock::now() - start);
       times.late_s = seconds(start - time_of(k));
       times.evaluate_s = all.timed.evaluate_s();
+      result.failed_cycles += done ? 0 : 1;
       times.frame_arriving = taking.load(std::memory_order_relaxed);
     }
   });
@@ -179,9 +200,10 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
     taking.store(true, std::memory_order_relaxed);
     const auto start = Clock::now();
     const double exposed_s = static_cast<double>(k) * recording.period_s();
-    (void)all.timed.take(all.intake.frames(recording.views(*frame), exposed_s));
+    const bool taken = all.timed.take(all.intake.frames(recording.views(*frame), exposed_s));
     result.frame_s.push_back(seconds(Clock::now() - start));
     taking.store(false, std::memory_order_relaxed);
+    result.failed_frames += taken ? 0 : 1;
     progress(exposed_s);
   }
   control.join();

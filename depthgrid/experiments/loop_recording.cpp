@@ -8,11 +8,7 @@ namespace depthgrid::experiments {
 
 LoopRecording::LoopRecording(const AvoidanceSettings& settings, double duration_s, std::uint64_t seed)
     : rig_(avoidance_rig(2, settings.width_px, settings.sensor)), period_s_(settings.period_s) {
-  const simulation::PersonStage stage = avoidance_stage(rig_);
-  AvoidanceMotion motion = scripted_motion(simulation::Motion::carry_box, stage, seed);
-  while (meets_a_camera(motion, rig_)) {
-    motion = scripted_motion(simulation::Motion::carry_box, stage, ++seed);
-  }
+  const AvoidanceMotion motion = carrying_person(rig_, duration_s, seed);
   motion_ = motion.name;
   RunSettings run;
   run.common = settings;
@@ -30,8 +26,7 @@ LoopRecording::LoopRecording(const AvoidanceSettings& settings, double duration_
     }
     frames_.push_back(std::move(frame));
   };
-  const RunResult result =
-      run_avoidance(Method::search, robot::kuka_lwr4(), nearest_part(motion, stage.robot_world, duration_s), run);
+  const RunResult result = run_avoidance(Method::search, robot::kuka_lwr4(), motion, run);
   for (const RunSample& sample : result.samples) {
     joints_.push_back(sample.q_rad);
   }

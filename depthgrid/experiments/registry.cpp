@@ -20,9 +20,9 @@ constexpr std::array kExperiments{
     Experiment{"cameras", "one to eight cameras: time, gray area, pockets behind the robot", run_camera_count},
     Experiment{"avoidance", "the letter's Fig. 15: a hexagon, a person with a box, the arm avoids",
                run_avoidance_experiment},
-    Experiment{"timing", "the avoidance loop on the real clock: cycles a second, cycles in time", run_timing},
+    Experiment{"timing", "the avoidance loop on the real clock: cycles a second, cycles in time", run_timing, "two"},
     Experiment{"campaign", "many random people beside an arm that avoids them: contacts, distances, task time",
-               run_campaign},
+               run_campaign, "all"},
 };
 
 }  // namespace

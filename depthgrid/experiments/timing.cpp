@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/loop_clock.hpp"
+#include "depthgrid/experiments/late_cycles.hpp"
 #include "depthgrid/experiments/markdown_table.hpp"
 #include "depthgrid/report/plot.hpp"
 
@@ -81,31 +81,16 @@ std::vector<std::string> free_row(const std::string& name, const ordered_json& f
 }
 
 struct PacedFigures {
-  std::size_t cycles = 0;
-  std::size_t in_time = 0;      ///< the command was there 2 ms after the period began
-  std::size_t late_begun = 0;   ///< of the misses: woken more than half a period late
-  std::size_t interrupted = 0;  ///< of the others: the processor time was below the period
-  std::size_t computed = 0;     ///< of the others: took that long itself
+  LateCycles late;
   std::vector<double> took_s, processor_s, end_s;
 };
 
 PacedFigures examine(const PacedRun& run, double period_s) {
-  PacedFigures figures;
+  PacedFigures figures{late_cycles(run.periods, period_s), {}, {}, {}};
   for (const PeriodTimes& times : run.periods) {
-    ++figures.cycles;
-    const double end_s = times.late_s + times.took_s;
     figures.took_s.push_back(times.took_s);
     figures.processor_s.push_back(times.processor_s);
-    figures.end_s.push_back(end_s);
-    if (end_s <= period_s) {
-      ++figures.in_time;
-    } else if (times.late_s > 0.5 * period_s) {
-      ++figures.late_begun;
-    } else if (times.processor_s < period_s) {
-      ++figures.interrupted;
-    } else {
-      ++figures.computed;
-    }
+    figures.end_s.push_back(times.late_s + times.took_s);
   }
   return figures;
 }
@@ -120,47 +105,7 @@ std::string worst_cycle(const PacedRun& run) {
          (worst->frame_arriving ? ", while a frame was taken" : "");
 }
 
-void report_paced(const std::string& name, const PacedRun& run, const AvoidanceSettings& settings,
-                  const search::Budget& budget, ExperimentReport& report, ordered_json& entry) {
-  const PacedFigures figures = examine(run, settings.period_s);
-  const double share = static_cast<double>(figures.in_time) / static_cast<double>(figures.cycles);
-  const double own_share =
-      static_cast<double>(std::count_if(figures.processor_s.begin(), figures.processor_s.end(),
-                                        [&](double value) { return value <= settings.period_s; })) /
-      static_cast<double>(figures.cycles);
-  const double stopped =
-      run.answered > 0 ? static_cast<double>(run.stopped_by_budget) / static_cast<double>(run.answered) : 0;
-  report.headline(
-      name + ": " + percent(share, 3) + " of " + std::to_string(figures.cycles) +
-      " cycles had their command within 2 ms of the period's beginning while frames arrived (wanted: 99.9 %); " +
-      percent(own_share, 3) +
-      " took no more than 2 ms of processor time. Longest: " + fixed(1e3 * at_share(figures.end_s, 1), 2) +
-      " ms after the beginning, " + fixed(1e3 * at_share(figures.processor_s, 1), 2) + " ms of processor time.");
-  report.paragraph(
-      "Of the " + std::to_string(figures.cycles - figures.in_time) + " late ones " +
-      std::to_string(figures.late_begun) + " were woken more than 1 ms late, " + std::to_string(figures.interrupted) +
-      " were interrupted by other programs, " + std::to_string(figures.computed) +
-      " computed for longer than 2 ms. The worst cycle: " + worst_cycle(run) +
-      ". Budget of the distances: " + fixed(1e3 * budget.time_s, 2) + " ms a cycle; it ended " + percent(stopped, 3) +
-      " of the answers. A pair of images took " + fixed(1e3 * at_share(run.frame_s, 0.5), 2) + " ms (median) and " +
-      fixed(1e3 * at_share(run.frame_s, 1), 2) + " ms (most) on the other thread, robot removal included. " +
-      (run.real_time_priority ? "The loop's thread had real-time priority."
-                              : "The loop's thread had no real-time priority."));
-  entry = {{"cycles", figures.cycles},
-           {"share_within_2_ms", share},
-           {"share_within_2_ms_of_processor_time", own_share},
-           {"median_ms", 1e3 * at_share(figures.took_s, 0.5)},
-           {"p999_ms", 1e3 * at_share(figures.took_s, 0.999)},
-           {"most_ms_after_beginning", 1e3 * at_share(figures.end_s, 1)},
-           {"most_ms_of_processor_time", 1e3 * at_share(figures.processor_s, 1)},
-           {"late",
-            {{"woken_late", figures.late_begun}, {"interrupted", figures.interrupted}, {"computed", figures.computed}}},
-           {"worst_cycle", worst_cycle(run)},
-           {"budget_ms", 1e3 * budget.time_s},
-           {"answers_ended_by_budget", stopped},
-           {"frame_pair_median_ms", 1e3 * at_share(run.frame_s, 0.5)},
-           {"frame_pair_most_ms", 1e3 * at_share(run.frame_s, 1)},
-           {"real_time_priority", run.real_time_priority}};
+void draw_cycles(const std::string& name, const PacedFigures& figures, ExperimentReport& report) {
   report::Plot plot;
   plot.title = name + ": duration of the loop's cycles while frames arrive";
   plot.x_label = "ms (the letter states 3.3, the period is 2)";
@@ -176,30 +121,65 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
   report.picture(file, std::move(canvas), "Histogram over the cycles, both axes logarithmic.");
 }
 
-}  // namespace
-
-void run_timing(const Options& options, ExperimentReport& report) {
-  AvoidanceSettings settings;
-  settings.width_px = width_or(options, 640, 640);
-  settings.resolution_m = 0.005;
-  const double recorded_s = frames_or(options, 150, 45) / kPlayedRate;
-  const double paced_s = options.quick ? 10 : 60;
-  const int snapshots = options.quick ? 10 : 40;
-  const int cycles = options.quick ? 64 : 128;
-  const search::Budget budget{0, kBudgetShare * settings.period_s};
-  const auto steps = static_cast<std::size_t>(2 * paced_s) + 3;
-  options.progress(0, steps);
-  const LoopRecording recording(settings, recorded_s, options.seed);
-  options.progress(1, steps);
+void report_paced(const std::string& name, const PacedRun& run, const AvoidanceSettings& settings,
+                  const search::Budget& budget, ExperimentReport& report, ordered_json& entry) {
+  const PacedFigures figures = examine(run, settings.period_s);
+  const LateCycles& late = figures.late;
+  const std::size_t cycles = run.periods.size();
+  const double share = static_cast<double>(late.in_time) / static_cast<double>(cycles);
+  const double own_share =
+      static_cast<double>(std::count_if(figures.processor_s.begin(), figures.processor_s.end(),
+                                        [&](double value) { return value <= settings.period_s; })) /
+      static_cast<double>(cycles);
+  const double stopped =
+      run.answered > 0 ? static_cast<double>(run.stopped_by_budget) / static_cast<double>(run.answered) : 0;
+  report.headline(name + ": " + percent(share, 3) + " of " + std::to_string(cycles) +
+                  " cycles had their command within 2 ms of the period's beginning while frames arrived (wanted: 99.9 "
+                  "%); " +
+                  percent(own_share, 3) +
+                  " took no more than 2 ms of processor time. Longest: " + fixed(1e3 * at_share(figures.end_s, 1), 2) +
+                  " ms after the beginning; largest processor time of any cycle: " +
+                  fixed(1e3 * at_share(figures.processor_s, 1), 2) + " ms. " + std::to_string(run.failed_cycles) +
+                  " cycles and " + std::to_string(run.failed_frames) + " pairs of images failed.");
   report.paragraph(
-      "A recording of the loop in simulated time (" + fixed(recorded_s, 1) + " s, " +
-      std::to_string(recording.frames()) + " pairs of " + std::to_string(settings.width_px) + " x " +
-      std::to_string(3 * settings.width_px / 4) + " images, 16 bits, ideal sensor, person: " + recording.motion() +
-      ") is played there and back: the arm stands where it stood, images come at 30 Hz, and robot removal, search "
-      "(resolution 5 mm, rho " +
-      fixed(search_settings(recording.rig(), settings).rho_m, 2) +
-      " m), kinematics and controller run as they would on the robot. Only the commands go nowhere.");
+      "Of the " + std::to_string(cycles - late.in_time) + " late ones " + std::to_string(late.after_overrun) +
+      " came after one that lasted until more than half of their period had gone, " + std::to_string(late.woken_late) +
+      " others were woken more than 1 ms late, " + std::to_string(late.interrupted) +
+      " others did not have the processor all the time, " + std::to_string(late.computed) +
+      " computed for 2 ms or longer. The worst cycle: " + worst_cycle(run) +
+      ". Budget of the distances: " + fixed(1e3 * budget.time_s, 2) + " ms a cycle; it ended " + percent(stopped, 3) +
+      " of the answers. A pair of images took " + fixed(1e3 * at_share(run.frame_s, 0.5), 2) + " ms (median) and " +
+      fixed(1e3 * at_share(run.frame_s, 1), 2) + " ms (most) on the other thread, robot removal included. " +
+      (run.real_time_priority ? "The loop's thread had real-time priority."
+                              : "The loop's thread had no real-time priority."));
+  entry = {{"cycles", cycles},
+           {"share_within_2_ms", share},
+           {"share_within_2_ms_of_processor_time", own_share},
+           {"median_ms", 1e3 * at_share(figures.took_s, 0.5)},
+           {"p999_ms", 1e3 * at_share(figures.took_s, 0.999)},
+           {"most_ms_after_beginning", 1e3 * at_share(figures.end_s, 1)},
+           {"most_ms_of_processor_time", 1e3 * at_share(figures.processor_s, 1)},
+           {"late",
+            {{"after_overrun", late.after_overrun},
+             {"woken_late", late.woken_late},
+             {"interrupted", late.interrupted},
+             {"computed", late.computed}}},
+           {"failed_cycles", run.failed_cycles},
+           {"failed_frame_pairs", run.failed_frames},
+           {"worst_cycle", worst_cycle(run)},
+           {"budget_ms", 1e3 * budget.time_s},
+           {"answers_ended_by_budget", stopped},
+           {"frame_pair_median_ms", 1e3 * at_share(run.frame_s, 0.5)},
+           {"frame_pair_most_ms", 1e3 * at_share(run.frame_s, 1)},
+           {"real_time_priority", run.real_time_priority}};
+  draw_cycles(name, figures, report);
+}
 
+/// The loop as fast as it goes, without frames arriving.
+void report_free(const LoopRecording& recording, const AvoidanceSettings& settings, bool quick,
+                 ExperimentReport& report) {
+  const int snapshots = quick ? 10 : 40;
+  const int cycles = quick ? 64 : 128;
   ordered_json& figures = report.figures();
   std::vector<std::vector<std::string>> rows;
   AvoidanceSettings bare = settings;  // what the letter asks: rho for the age of the image is not added
@@ -219,7 +199,6 @@ void run_timing(const Options& options, ExperimentReport& report) {
   add("search_link_capsules", "search, six link capsules", Method::search, LoopParts::link_capsules, settings, cycles);
   add("letter_two", "letter, nine points, rho 0.40 m, hybrid", Method::letter_two, nine, settings,
       std::max(1, cycles / 16));
-  options.progress(2, steps);
   const double rate = figures["free"]["search_nine_points"]["cycles_a_second"];
   const double letter_rate = figures["free"]["letter_two"]["cycles_a_second"];
   report.headline("Without frames arriving one core does " + fixed(rate, 0) +
@@ -231,7 +210,32 @@ void run_timing(const Options& options, ExperimentReport& report) {
                                    "by the wall clock", "median, ms", "99.9 %, ms", "most, ms", "of that, distances"},
                                   rows));
   figures["free"]["search_beside_letter"] = rate / letter_rate;
+}
 
+}  // namespace
+
+void run_timing(const Options& options, ExperimentReport& report) {
+  AvoidanceSettings settings;
+  settings.width_px = width_or(options, 640, 640);
+  settings.resolution_m = 0.005;
+  const double recorded_s = frames_or(options, 150, 45) / kPlayedRate;
+  const double paced_s = options.quick ? 10 : 60;
+  const search::Budget budget{0, kBudgetShare * settings.period_s};
+  const auto steps = static_cast<std::size_t>(2 * paced_s) + 3;
+  options.progress(0, steps);
+  const LoopRecording recording(settings, recorded_s, options.seed);
+  options.progress(1, steps);
+  report.paragraph(
+      "A recording of the loop in simulated time (" + fixed(recorded_s, 1) + " s, " +
+      std::to_string(recording.frames()) + " pairs of " + std::to_string(settings.width_px) + " x " +
+      std::to_string(3 * settings.width_px / 4) + " images, 16 bits, ideal sensor, person: " + recording.motion() +
+      ") is played there and back: the arm stands where it stood, images come at 30 Hz, and robot removal, search "
+      "(resolution 5 mm, rho " +
+      fixed(search_settings(recording.rig(), settings).rho_m, 2) +
+      " m), kinematics and controller run as they would on the robot. Only the commands go nowhere.");
+
+  report_free(recording, settings, options.quick, report);
+  options.progress(2, steps);
   std::size_t passed = 2;
   for (const LoopParts parts : {LoopParts::nine_points, LoopParts::link_capsules}) {
     const auto before = static_cast<double>(passed);
@@ -241,7 +245,7 @@ void run_timing(const Options& options, ExperimentReport& report) {
     passed += static_cast<std::size_t>(paced_s);
     const bool points = parts == LoopParts::nine_points;
     report_paced(points ? "nine points" : "link capsules", run, settings, budget, report,
-                 figures["paced"][points ? "nine_points" : "link_capsules"]);
+                 report.figures()["paced"][points ? "nine_points" : "link_capsules"]);
   }
   options.progress(steps, steps);
 }

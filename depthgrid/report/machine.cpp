@@ -56,14 +56,14 @@ std::string compiler() {
 
 }  // namespace
 
-std::string machine_line() {
+std::string machine_line(std::string_view used) {
   const std::time_t now = std::time(nullptr);
   std::tm date{};
   gmtime_r(&now, &date);
   std::array<char, 16> text{};
   (void)std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
   return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores (" + instruction_sets() +
-         "), one used; built for " + built_for() + " by " + compiler() + "; " + text.data();
+         "), " + std::string(used) + " used; built for " + built_for() + " by " + compiler() + "; " + text.data();
 }
 
 }  // namespace depthgrid::report

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace depthgrid::report {
 
-/// One line: processor, cores, instruction sets, compiler, date. For the head of a table.
-[[nodiscard]] std::string machine_line();
+/// One line: processor, cores, instruction sets, compiler, date. For the head of a table. `used`: how many of the
+/// cores.
+[[nodiscard]] std::string machine_line(std::string_view used = "one");
 
 }  // namespace depthgrid::report

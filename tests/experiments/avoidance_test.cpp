@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "depthgrid/experiments/campaign_report.hpp"
 #include "depthgrid/experiments/plate_scene.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
+#include "input/temporary_folder.hpp"
 #include "support/random_run.hpp"
 #include "support/thrown_message.hpp"
 
@@ -78,6 +80,104 @@ TEST(Avoidance, RunsRepeatToTheBit) {
   EXPECT_EQ(first.task_share, second.task_share);
 }
 
+/// A person who stands: a capsule along y.
+AvoidanceMotion standing_at(const Eigen::Vector3d& p_world) {
+  AvoidanceMotion motion;
+  motion.name = "standing";
+  motion.duration_s = 4;
+  motion.at = [p_world](double) {
+    const Eigen::Vector3d half(0, 0.3, 0);
+    return MovingSolids{{{p_world - half, p_world + half, 0.04}}, {}};
+  };
+  return motion;
+}
+
+TEST(Avoidance, ContactsAtTheStartAreNobodysDoing) {
+  const robot::RobotModel model = robot::kuka_lwr4();
+  RunSettings settings;
+  settings.common = small_images();
+  settings.duration_s = 1;
+  const AvoidanceMotion motion = standing_at(hexagon_centre_world(model));
+  const RunResult run = run_avoidance(Method::none, model, motion, settings);
+  ASSERT_FALSE(run.contacts.empty());
+  EXPECT_EQ(run.contacts[0].time_s, 0);
+  EXPECT_EQ(run.contacts[0].cause, ContactCause::touched_from_the_start);
+  CampaignState state;
+  state.motions[0] = {motion.name, 0, {{Method::none, summary_of(run)}}};
+  state.motions[0].runs[Method::none].contacts.resize(1);
+  EXPECT_TRUE(contacts_caused(state, Method::none, 2).empty());
+}
+
+TEST(Avoidance, AnArmThatDoesNotAvoidComesAndGoesOn) {
+  const robot::RobotModel model = robot::kuka_lwr4();
+  RunSettings settings;
+  settings.common = small_images();
+  settings.duration_s = 4;
+  const auto vertices = loop_settings(Method::none, model, settings.common).task.vertices_world;
+  const Eigen::Vector3d lowest_world =
+      *std::min_element(vertices.begin(), vertices.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  const RunResult run = run_avoidance(Method::none, model, standing_at(lowest_world), settings);
+  ASSERT_FALSE(run.contacts.empty());
+  const Contact& contact = run.contacts[0];
+  EXPECT_GT(contact.time_s, 0);
+  EXPECT_EQ(contact.cause, ContactCause::robot_came);
+  EXPECT_GT(contact.robot_m_s, kStanding_m_s);
+  EXPECT_NEAR(contact.person_m_s, 0, 0.05);
+  ASSERT_TRUE(contact.fastest_during_m_s);
+  EXPECT_GT(*contact.fastest_during_m_s, kStanding_m_s);
+}
+
+TEST(Campaign, TellsScriptsAndRecordingsApart) {
+  const auto outcome = [](const std::string& name, double letter, double own) {
+    MotionOutcome result{name, 1, {}};
+    result.runs[Method::letter_two].task_share = letter;
+    result.runs[Method::search].task_share = own;
+    return result;
+  };
+  CampaignState state;
+  state.motions[0] = outcome("walk_in 1", 10, 8);
+  state.motions[1] = outcome("reach 2", 10, 5);
+  state.motions[2] = outcome("mocap 02_06 3", 2, 0.5);
+  state.motions[3] = outcome("mocap 02_06 4", 0.5, 0.5);
+  const TimeBesideLetter all = time_beside_letter(state, Method::search, Motions::all);
+  EXPECT_EQ(all.motions, 4);
+  EXPECT_NEAR(all.ratio, 22.5 / 14, 1e-12);
+  EXPECT_EQ(all.above_wanted, 2);
+  const TimeBesideLetter scripts = time_beside_letter(state, Method::search, Motions::scripts);
+  EXPECT_EQ(scripts.motions, 2);
+  EXPECT_NEAR(scripts.ratio, 20.0 / 13, 1e-12);
+  EXPECT_EQ(scripts.below_one_vertex, 0);
+  const TimeBesideLetter recordings = time_beside_letter(state, Method::search, Motions::recordings);
+  EXPECT_EQ(recordings.motions, 2);
+  EXPECT_NEAR(recordings.ratio, 2.5, 1e-12);
+  EXPECT_EQ(recordings.above_wanted, 1);
+  EXPECT_EQ(recordings.below_one_vertex, 2);
+  EXPECT_EQ(recordings.letter_below_vertex, 1);
+}
+
+TEST(CampaignFile, KeepsContacts) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "state.json";
+  CampaignState state{{{"seed", 1}}, {}};
+  for (const Method method : kMethods) {
+    state.motions[0].runs[method];
+  }
+  Contact begun;
+  begun.cause = ContactCause::touched_from_the_start;
+  Contact later{.time_s = 1.5, .link = 6, .robot_m_s = 0.02, .person_m_s = 1, .told_m = 0.1, .really_m = 0.01};
+  later.fastest_during_m_s = 0.03;
+  state.motions[0].runs[Method::search].contacts = {begun, later};
+  write_campaign_state(file, state);
+  const CampaignState read = read_campaign_state(file, state.settings);
+  const std::vector<Contact>& contacts = read.motions.at(0).runs.at(Method::search).contacts;
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_EQ(contacts[0].cause, ContactCause::touched_from_the_start);
+  EXPECT_FALSE(contacts[0].told_m || contacts[0].fastest_during_m_s);
+  EXPECT_EQ(contacts[1].link, 6U);
+  EXPECT_EQ(contacts[1].told_m, 0.1);
+  EXPECT_EQ(contacts[1].fastest_during_m_s, 0.03);
+}
+
 TEST(Campaign, TheSearchCausesNoContactAndHoldsNothingForTooFar) {
   constexpr int kEnough = 10;  // for motions that touch an arm that does not avoid
   const test::RandomRun random = test::random_run(kEnough);
@@ -92,27 +192,16 @@ TEST(Campaign, TheSearchCausesNoContactAndHoldsNothingForTooFar) {
   EXPECT_TRUE(contacts_caused(state, Method::search_pockets, plan.common.v_max_m_s).empty()) << random.reproduce();
   if (random.count >= kEnough) {
     EXPECT_GT(none.with_contact, 0) << "motions that touch nothing show nothing";
-    EXPECT_GT(search.watched, 1000);
+    EXPECT_GT(search.compared, 1000);
     EXPECT_GT(search.median_smallest_m, none.median_smallest_m);
   }
 }
 
-class CampaignFile : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("depthgrid_campaign_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directory(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_;
-};
-
-TEST_F(CampaignFile, GoesOnWhereItWasCutOff) {
+TEST(CampaignFile, GoesOnWhereItWasCutOff) {
   CampaignPlan plan = small_campaign(1);
   plan.duration_s = 0.5;
-  const std::filesystem::path file = folder_ / "state.json";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "state.json";
   const nlohmann::ordered_json settings = settings_of(plan, false);
   const CampaignState first = run(plan, file, read_campaign_state(file, settings));
   CampaignState read = read_campaign_state(file, settings);
@@ -131,13 +220,28 @@ TEST_F(CampaignFile, GoesOnWhereItWasCutOff) {
   EXPECT_EQ(second.motions.at(0).name, "already done");
 }
 
-TEST_F(CampaignFile, RefusesWhatDoesNotBelongToIt) {
+TEST(CampaignFile, RefusesWhatDoesNotBelongToIt) {
   CampaignPlan plan = small_campaign(1);
-  const std::filesystem::path file = folder_ / "state.json";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "state.json";
   write_campaign_state(file, {settings_of(plan, false), {}});
-  plan.seed = 2;
-  EXPECT_THAT(test::thrown_message([&] { (void)read_campaign_state(file, settings_of(plan, false)); }),
-              HasSubstr("state.json: belongs to a campaign with"));
+  const auto refused = [&](const CampaignPlan& other) {
+    return test::thrown_message([&] { (void)read_campaign_state(file, settings_of(other, false)); });
+  };
+  EXPECT_EQ(refused(plan), "");
+  CampaignPlan other = plan;
+  other.seed = 2;
+  EXPECT_THAT(refused(other), HasSubstr("state.json: belongs to a campaign with"));
+  for (double AvoidanceSettings::*setting :
+       {&AvoidanceSettings::period_s, &AvoidanceSettings::frame_latency_s, &AvoidanceSettings::rho_m,
+        &AvoidanceSettings::repulsion_m_s, &AvoidanceSettings::v_max_m_s, &AvoidanceSettings::ignored_pocket_m,
+        &AvoidanceSettings::resolution_m, &AvoidanceSettings::approach_gain_per_s, &AvoidanceSettings::approach_stop_m,
+        &AvoidanceSettings::removal_padding_m}) {
+    other = plan;
+    other.common.*setting *= 2;
+    EXPECT_THAT(refused(other), HasSubstr("belongs to a campaign with")) << settings_of(other, false).dump();
+  }
+  EXPECT_TRUE(settings_of(plan, false).contains("program"));
   std::ofstream(file) << "{\"campaign\": ";
   EXPECT_THAT(test::thrown_message([&] { (void)read_campaign_state(file, settings_of(plan, false)); }),
               HasSubstr("state.json: is no state of a campaign"));
