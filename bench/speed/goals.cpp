@@ -136,9 +136,9 @@ std::string broken_claim(const Report& report) {
     return false;
   };
   const auto nine_s = [&report](double cameras) { return ours(report, "W", "nine points", cameras, "call_median_s"); };
-  if (at_least("`letter` takes the time of the search", letter_ratio(report, "W", "letter, hybrid", "search"), 2) ||
-      at_least("a nanoflann cycle takes the time of ours", cycle_ratio(report, "W", "nanoflann, cell"), 5) ||
-      at_least("an OctoMap cycle takes the time of ours", cycle_ratio(report, "W", "OctoMap 5 cm + EDT"), 30) ||
+  if (at_least("`letter` takes the time of the search", letter_ratio(report, "W", "letter, hybrid", "search"), 3) ||
+      at_least("a nanoflann cycle takes the time of ours", cycle_ratio(report, "W", "nanoflann, cell"), 8) ||
+      at_least("an OctoMap cycle takes the time of ours", cycle_ratio(report, "W", "OctoMap 5 cm + EDT"), 40) ||
       at_least("nine points of 2 cameras take the time of 8", nine_s(2) / nine_s(8), 0.1)) {
     return text.str();
   }
