@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "depthgrid/experiments/campaign.hpp"
 #include "depthgrid/experiments/campaign_motions.hpp"
-#include "depthgrid/experiments/campaign_report.hpp"
+#include "depthgrid/experiments/campaign_totals.hpp"
 #include "depthgrid/experiments/plate_scene.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "input/temporary_folder.hpp"
