@@ -101,7 +101,7 @@ AvoidanceMotion hand_against_plate(const Eigen::Vector3d& end_effector_world) {
 }
 
 AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3d& p_world, double duration_s) {
-  constexpr double kBefore = 0.5;  // share of the part that comes before the nearest instant
+  constexpr double kShareBefore = 0.5;  // share of the part that comes before the nearest instant
   if (!motion.at || motion.duration_s <= duration_s) {
     return motion;
   }
@@ -117,7 +117,7 @@ AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3
       }
     }
   }
-  const double begin_s = std::clamp(nearest_s - kBefore * duration_s, 0.0, motion.duration_s - duration_s);
+  const double begin_s = std::clamp(nearest_s - kShareBefore * duration_s, 0.0, motion.duration_s - duration_s);
   AvoidanceMotion part = motion;
   part.at = [whole = motion.at, begin_s](double time_s) { return whole(begin_s + time_s); };
   part.duration_s = duration_s;
