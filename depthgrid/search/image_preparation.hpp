@@ -21,6 +21,7 @@ struct NewImage {
   RobotView robot;     ///< with its stride
   int reach_px = 0;    ///< w
   float pocket_m = 0;  ///< ignored beyond the robot's exit, rounded towards zero
+  float blind_m = 0;   ///< where the blind zone ends, rounded up
 };
 
 /// What is written; images are dense.

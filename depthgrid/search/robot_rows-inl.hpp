@@ -39,7 +39,8 @@ HWY_INLINE PixelRange robot_columns(const NewImage& image, int v) {
   return last < 0 ? PixelRange{} : PixelRange{first / kStep * kStep, std::min((last / kStep + 1) * kStep, width_px)};
 }
 
-/// Frees one row of g up to the robot's exits where the robot begins in free space; where it does not, it is an island.
+/// Frees one row of g up to the robot's exits where the robot begins in free space. Where it does not, or reaches into
+/// the blind zone, it is an island.
 HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& columns, const PreparedImage& result,
                            float* free_row_m) {
   const Floats d;
@@ -47,6 +48,7 @@ HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& colum
   const int width_px = image.depth.width_px;
   const float* near_m = image.robot.near_m + image.robot.stride_px * v;
   const float* far_m = image.robot.far_m + image.robot.stride_px * v;
+  const V blind = hn::Set(d, image.blind_m);
   PixelRange islands;
   for (int u = columns.begin; u < columns.end; u += n) {
     const int count = width_px - u;
@@ -57,7 +59,7 @@ HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& colum
     const M robot = hn::And(hn::And(hn::Gt(near, hn::Zero(d)), hn::Le(near, far)), hn::Le(far, hn::Set(d, kLargest)));
     const M begins_free = hn::And(robot, hn::Le(near, free));
     store_some(hn::IfThenElse(begins_free, hn::Max(free, far), free), d, free_row_m + u, count);
-    const M island = hn::And(robot, hn::Gt(near, free));
+    const M island = hn::And(robot, hn::Or(hn::Gt(near, free), hn::Lt(near, blind)));
     if (!hn::AllFalse(d, island)) {
       ask_for(pixel_row(result.island_near_m, width_px, v + 2) + u, 0);
       ask_for(pixel_row(result.island_far_m, width_px, v + 2) + u, 0);

@@ -26,6 +26,11 @@ float pocket_m(const Policies& policies) noexcept {
   return static_cast<double>(nearest_m) > exact_m ? std::nextafter(nearest_m, 0.0F) : nearest_m;
 }
 
+float not_below(double value) noexcept {
+  const auto nearest = static_cast<float>(value);
+  return static_cast<double>(nearest) < value ? std::nextafter(nearest, kInf) : nearest;
+}
+
 }  // namespace
 
 std::vector<PyramidLevel> pyramid_levels(int width_px, int height_px, std::size_t& total) {
@@ -49,6 +54,7 @@ struct View::Preparation {
         reading(camera.rule, camera.metres_per_unit, margins.sensor),
         reach_px(margins.sensor.lateral_px),
         pocket(pocket_m(policies)),
+        blind_m(not_below(camera.rule.near_m)),
         rows(camera.intrinsics.width_px, camera.intrinsics.height_px, reach_px),
         island_columns(static_cast<std::size_t>(camera.intrinsics.height_px)) {}
 
@@ -56,6 +62,7 @@ struct View::Preparation {
   Reading reading;
   int reach_px;
   float pocket;
+  float blind_m;
   PreparationRows rows;
   std::vector<PixelRange> island_columns;  ///< where a row of the island images may differ from "none"
   std::vector<PixelRange> island_texels;   ///< the same of all rows of the island pyramids
@@ -151,7 +158,7 @@ bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
     return false;
   }
   Preparation& p = *preparation_;
-  NewImage image{frame.depth, frame.robot, p.reach_px, p.pocket};
+  NewImage image{frame.depth, frame.robot, p.reach_px, p.pocket, p.blind_m};
   if (image.depth.stride_bytes == 0) {
     image.depth.stride_bytes = row_bytes(image.depth.format, width_px());
   }

@@ -64,8 +64,9 @@ class View {
   [[nodiscard]] const float* minima_m() const noexcept { return minima_m_.data(); }
   [[nodiscard]] const std::vector<PyramidLevel>& levels() const noexcept { return levels_; }
 
-  /// True when some pixel has a robot interval beyond its free depth (something stands before the robot, or nothing was
-  /// measured there): an island that is not an obstacle to this camera. Else the island images are not up to date.
+  /// True when some pixel has a robot interval that free_m() does not hold wholly: it begins beyond the free depth
+  /// (something stands before the robot, or nothing was measured there) or in the blind zone. Such an interval is an
+  /// island that is not an obstacle to this camera. Else the island images are not up to date.
   [[nodiscard]] bool has_islands() const noexcept { return has_islands_; }
   /// Per pixel [near, far] of the island; (+inf, -inf) where there is none.
   [[nodiscard]] const DepthImage& island_near_m() const noexcept { return island_near_m_; }

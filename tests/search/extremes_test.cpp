@@ -137,6 +137,21 @@ TEST(Cameras, DoNotTakeTheRobotInTheirBlindZoneForAnObstacle) {
   EXPECT_GT(Asker(one.setup).distance(point({0, 0, 0.2})).nearest.distance_m, 0.08);
 }
 
+TEST(Cameras, DoNotTakeTheRobotInTheirBlindZoneForAnObstacleInFreeSpaceEither) {
+  // A wall is measured far behind the link, so that all of the link but what lies in the blind zone (to 0.3 m) is free.
+  for (const float exit_m : {0.2F, 0.29F, 0.3F, 0.31F, 0.4F}) {
+    OneCamera one(4.0F);
+    const std::vector<float> near_m(one.image_m.size(), 0.1F);
+    const std::vector<float> far_m(one.image_m.size(), exit_m);
+    one.setup.frames[0].robot = {near_m.data(), far_m.data()};
+    for (const double z_m : {0.05, 0.12, 0.15, 0.19, 0.25, 0.295, 0.305, 0.35, 0.45}) {
+      SCOPED_TRACE(testing::Message() << "link to " << exit_m << " m, point at " << z_m << " m");
+      expect_within_oracle(one.setup, {0, 0, z_m});
+    }
+    EXPECT_GT(Asker(one.setup).distance(point({0, 0, 0.15})).nearest.distance_m, 0.045);
+  }
+}
+
 TEST(Cameras, CanBeSeenFreeByAnother) {
   OneCamera one(4.0F);
   RigCamera other = one.setup.rig.cameras[0];

@@ -104,12 +104,17 @@ testing::AssertionResult Twin::pixel(int u, int v, bool& is_island) const {
   }
   Bounds free = filtered(u, v);
   if (r.near_m > 0) {
-    if (is_island ? r.near_m <= free.low_m : r.near_m > free.high_m) {
+    const bool in_blind_zone = static_cast<double>(r.near_m) < camera.rule.near_m;
+    if (is_island ? r.near_m <= free.low_m && !in_blind_zone : r.near_m > free.high_m || in_blind_zone) {
       return wrong(is_island ? "an island that is none: free depth" : "an island is missing: free depth")
              << static_cast<double>(free.low_m) << ", robot from " << r.near_m;
     }
-    if (!is_island) {
-      free = {std::max<long double>(free.low_m, r.far_m), std::max<long double>(free.high_m, r.far_m)};
+    // In the blind zone the island does not say on which side of free_m the robot begins.
+    if (in_blind_zone ? r.near_m <= free.low_m : !is_island) {
+      free.low_m = std::max<long double>(free.low_m, r.far_m);
+    }
+    if (in_blind_zone ? r.near_m <= free.high_m : !is_island) {
+      free.high_m = std::max<long double>(free.high_m, r.far_m);
     }
   }
   const float free_m = view.free_m().at(u, v);
