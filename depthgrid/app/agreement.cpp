@@ -15,8 +15,7 @@ constexpr double kCoveredShare = 0.95;
 
 }  // namespace
 
-// One pass over the pixels, one step after the other: splitting it would hide the order of the tests.
-// NOLINTNEXTLINE(readability-function-cognitive-complexity)
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one pass whose order of tests splitting would hide
 void add_pair(const Surface& a, const Surface& b, const PinholeCamera& camera_b, const Eigen::Isometry3d& T_b_a,
               double limit_m, int stride_px, const SensorMargin& margin_a, const SensorMargin& margin_b,
               PairAgreement& agreement) {

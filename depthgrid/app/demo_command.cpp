@@ -14,8 +14,7 @@
 #include "depthgrid/search/search.hpp"
 #include "depthgrid/simulation/demo_scene.hpp"
 
-// printf lays out the table; streams would need a line a column.
-// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg)
+// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg): printf lays out the table; streams would need a line a column
 
 namespace depthgrid::app {
 

@@ -11,8 +11,7 @@ namespace depthgrid::app {
 
 namespace {
 
-// printf's formats lay out tables in one line each, and the compiler checks them.
-// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg, cert-dcl50-cpp)
+// NOLINTBEGIN(cppcoreguidelines-pro-type-vararg, cert-dcl50-cpp): formats lay out tables, and the compiler checks them
 
 constexpr std::size_t kPairsInTable = 30;
 

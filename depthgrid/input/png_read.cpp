@@ -70,7 +70,7 @@ bool read_header(Reader& reader) noexcept {
 }
 
 bool read_pixels(Reader& reader, std::uint16_t* pixels, std::size_t width, std::size_t height) noexcept {
-  if (setjmp(png_jmpbuf(reader.png)) != 0) {  // NOLINT(cert-err52-cpp)
+  if (setjmp(png_jmpbuf(reader.png)) != 0) {  // NOLINT(cert-err52-cpp): libpng's own way of reporting errors
     return false;
   }
   if constexpr (std::endian::native == std::endian::little) {
