@@ -1,5 +1,8 @@
 #include "depthgrid/experiments/avoidance_cell.hpp"
 
+#include <utility>
+
+#include "depthgrid/experiments/rig_width.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
 
@@ -20,17 +23,7 @@ BodyKind kind_of(const robot::RobotModel& model, std::size_t link) {
 Rig avoidance_rig(int cameras, int width_px, std::string_view sensor) {
   Rig rig = simulation::arrangement(2, sensor).rig;
   rig.cameras.resize(static_cast<std::size_t>(cameras));
-  for (RigCamera& camera : rig.cameras) {
-    PinholeCamera& pinhole = camera.intrinsics;
-    const double scale = static_cast<double>(width_px) / pinhole.width_px;
-    pinhole = {width_px,
-               3 * width_px / 4,
-               pinhole.fx_px * scale,
-               pinhole.fy_px * scale,
-               pinhole.cx_px * scale,
-               pinhole.cy_px * scale};
-  }
-  return rig;
+  return with_width(std::move(rig), width_px);
 }
 
 AvoidanceCell::AvoidanceCell(const robot::RobotModel& model, const AvoidanceMotion& motion)

@@ -16,7 +16,7 @@
 
 namespace depthgrid::experiments {
 
-/// The letter's cameras, 1 or 2 of them, with images of this width (4:3) and the same view. `sensor`: see
+/// The letter's cameras, 1 or 2 of them, with images of this width (as with_width()) and the same view. `sensor`: see
 /// simulation::letter_arrangement(). Throws Error on an unknown sensor.
 [[nodiscard]] Rig avoidance_rig(int cameras, int width_px, std::string_view sensor);
 

@@ -10,6 +10,7 @@
 #include "depthgrid/experiments/distance_method.hpp"
 #include "depthgrid/experiments/point_truth.hpp"
 #include "depthgrid/experiments/processor_time.hpp"
+#include "depthgrid/experiments/rig_width.hpp"
 
 namespace depthgrid::experiments {
 

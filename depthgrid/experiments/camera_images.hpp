@@ -20,9 +20,6 @@ enum class RobotPixels : std::uint8_t {
   background,      ///< replaced by the empty room: nothing stands behind the robot. Not true whenever something does
 };
 
-/// The same rig with images of another width, 4:3, and the same view.
-[[nodiscard]] Rig with_width(Rig rig, int width_px);
-
 /// Images of one instant. Sensors as RigCamera::sensor names them; "ideal" ones are exact. One thread.
 class CameraImages {
  public:

@@ -8,6 +8,7 @@
 #include "depthgrid/experiments/experiment_report.hpp"
 #include "depthgrid/experiments/markdown_table.hpp"
 #include "depthgrid/experiments/method_comparison.hpp"
+#include "depthgrid/experiments/rig_width.hpp"
 
 namespace depthgrid::experiments {
 

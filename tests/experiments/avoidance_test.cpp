@@ -40,6 +40,20 @@ CampaignState run(const CampaignPlan& plan, const std::filesystem::path& file, C
   return state;
 }
 
+TEST(AvoidanceRig, MarginsAreThoseOfItsOwnFocalLength) {
+  const Rig full = avoidance_rig(2, 640, "realsense_d435");
+  const Rig quarter = avoidance_rig(2, 160, "realsense_d435");
+  ASSERT_EQ(quarter.cameras.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const RigCamera& camera = quarter.cameras[k];
+    EXPECT_EQ(camera.intrinsics.width_px, 160);
+    EXPECT_EQ(camera.intrinsics.height_px, 120);
+    ASSERT_TRUE(camera.margins && full.cameras[k].margins);
+    // Noise of a disparity costs z^2 / (f b): a quarter of the focal length, four times the margin.
+    EXPECT_NEAR(camera.margins->sensor.quadratic_per_m, 4 * full.cameras[k].margins->sensor.quadratic_per_m, 1e-9);
+  }
+}
+
 TEST(Avoidance, WithNobodyThereNoMethodTakesLonger) {
   const robot::RobotModel model = robot::kuka_lwr4();
   RunSettings settings;

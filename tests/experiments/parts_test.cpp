@@ -10,6 +10,7 @@
 #include "depthgrid/experiments/deviation.hpp"
 #include "depthgrid/experiments/experiment.hpp"
 #include "depthgrid/experiments/point_truth.hpp"
+#include "depthgrid/experiments/rig_width.hpp"
 #include "depthgrid/experiments/two_views.hpp"
 #include "support/thrown_message.hpp"
 
