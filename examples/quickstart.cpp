@@ -78,7 +78,8 @@ int run() {
   frame.depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
   frame.time_s = 0.0;  // middle of the exposure, one clock for all cameras
   if (store.update(0, frame) != search::UpdateResult::taken) {
-    std::puts("the frame is not usable: all that this camera should see counts as not free");
+    const char* reason = store.why_unusable(0, frame);  // null: more snapshots are held than the store was made for
+    std::printf("frame not taken: %s\n", reason != nullptr ? reason : "all buffers are held");
   }
 
   // 5. Whole links of the robot at once: points, spheres and capsules, world frame.

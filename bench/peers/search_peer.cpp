@@ -28,7 +28,7 @@ SearchPeer::SearchPeer(const PeerSetting& setting, double resolution_m)
 
 void SearchPeer::prepare(std::span<const Frame> frames, const Region& /*region*/) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    store_.update(k, frames[k]);
+    (void)store_.update(k, frames[k]);
   }
   snapshot_ = store_.snapshot();
 }

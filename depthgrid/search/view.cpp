@@ -105,15 +105,28 @@ float View::measured_m(int u, int v) const noexcept {
   return measured_depth_m(kept, preparation_->rule, u, v).value_or(0.0F);
 }
 
-bool View::is_usable(const Frame& frame) const noexcept {
+const char* View::why_unusable(const Frame& frame) const noexcept {
   const DepthView& depth = frame.depth;
   const RobotView& robot = frame.robot;
-  return depth.data != nullptr && depth.width_px == width_px() && depth.height_px == height_px() &&
-         (depth.stride_bytes == 0 || std::abs(depth.stride_bytes) >= row_bytes(depth.format, depth.width_px)) &&
-         (depth.format != DepthFormat::uint16_units ||
-          depth.metres_per_unit == preparation_->reading.metres_per_unit) &&
-         (robot.near_m == nullptr) == (robot.far_m == nullptr) &&
-         (robot.near_m == nullptr || robot.stride_px == 0 || std::abs(robot.stride_px) >= depth.width_px);
+  if (depth.data == nullptr) {
+    return "there is no depth image";
+  }
+  if (depth.width_px != width_px() || depth.height_px != height_px()) {
+    return "the depth image has another size than the camera's intrinsics";
+  }
+  if (depth.stride_bytes != 0 && std::abs(depth.stride_bytes) < row_bytes(depth.format, depth.width_px)) {
+    return "the depth image's rows overlap: the stride is less than a row";
+  }
+  if (depth.format == DepthFormat::uint16_units && depth.metres_per_unit != preparation_->reading.metres_per_unit) {
+    return "the depth image has another scale than the camera's metres_per_unit";
+  }
+  if ((robot.near_m == nullptr) != (robot.far_m == nullptr)) {
+    return "the robot view has only one of near_m and far_m";
+  }
+  if (robot.near_m != nullptr && robot.stride_px != 0 && std::abs(robot.stride_px) < depth.width_px) {
+    return "the robot view's rows overlap: the stride is less than a row";
+  }
+  return nullptr;
 }
 
 void View::clear() noexcept {
@@ -153,7 +166,7 @@ void View::join_island_bands() noexcept {
 
 bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
   T_world_camera_ = T_world_camera;  // what the camera covers is known although nothing in it is free
-  if (!is_usable(frame)) {
+  if (why_unusable(frame) != nullptr) {
     clear();
     return false;
   }

@@ -46,6 +46,8 @@ class View {
   /// False when the frame is unusable (no data, another size or depth scale than the camera's, rows that overlap, half
   /// a robot view); then nothing is free.
   bool update(const Frame& frame, const Pose& T_world_camera) noexcept;
+  /// Why update() finds a frame unusable, as a text that lives for ever; null: it is usable.
+  [[nodiscard]] const char* why_unusable(const Frame& frame) const noexcept;
 
   [[nodiscard]] int width_px() const noexcept { return free_m_.width_px(); }
   [[nodiscard]] int height_px() const noexcept { return free_m_.height_px(); }
@@ -81,7 +83,6 @@ class View {
  private:
   struct Preparation;
 
-  [[nodiscard]] bool is_usable(const Frame& frame) const noexcept;
   void clear() noexcept;
   void clear_islands() noexcept;
   void join_island_bands() noexcept;

@@ -171,6 +171,19 @@ UpdateResult ViewStore::update(std::size_t camera, const Frame& frame, const Pos
   return camera < state_->cameras.size() ? state_->update(camera, frame, T_world_camera) : UpdateResult::unusable;
 }
 
+// What makes a frame usable is the same for every buffer of a camera, and never changes.
+const char* ViewStore::why_unusable(std::size_t camera, const Frame& frame) const noexcept {
+  return camera < state_->cameras.size() ? state_->cameras[camera].views[0].why_unusable(frame)
+                                         : "the rig has no such camera";
+}
+
+const char* ViewStore::why_unusable(std::size_t camera, const Frame& frame, const Pose& T_world_camera) const noexcept {
+  const char* reason = why_unusable(camera, frame);
+  return reason == nullptr && !is_valid(T_world_camera)
+             ? "the pose is none: not finite, not a rotation, or farther than the largest translation"
+             : reason;
+}
+
 Snapshot ViewStore::snapshot() const noexcept { return Snapshot(*state_); }
 const Rig& ViewStore::rig() const noexcept { return state_->rig; }
 const Settings& ViewStore::settings() const noexcept { return state_->settings; }

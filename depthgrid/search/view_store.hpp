@@ -16,7 +16,7 @@ class Snapshot;
 
 enum class UpdateResult : std::uint8_t {
   taken,     ///< the frame is the camera's newest
-  unusable,  ///< taken as "no measurement anywhere": no data, wrong size or scale, half a robot view, or a bad pose
+  unusable,  ///< taken as "no measurement anywhere"; why_unusable() says why
   dropped,   ///< held snapshots occupy every buffer of this camera: the frame before stays the newest
 };
 
@@ -35,8 +35,13 @@ class ViewStore {
 
   /// Takes a frame of one camera. With `T_world_camera` the camera has moved; without it stands where the rig says.
   /// `camera` beyond the rig is `unusable`.
-  UpdateResult update(std::size_t camera, const Frame& frame) noexcept;
-  UpdateResult update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept;
+  [[nodiscard]] UpdateResult update(std::size_t camera, const Frame& frame) noexcept;
+  [[nodiscard]] UpdateResult update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept;
+  /// Why update() answers `unusable`, as a text that lives for ever: no data, wrong size or scale, rows that overlap,
+  /// half a robot view, a pose that is none, no such camera. Null: the frame is usable. Any thread, at any time.
+  [[nodiscard]] const char* why_unusable(std::size_t camera, const Frame& frame) const noexcept;
+  [[nodiscard]] const char* why_unusable(std::size_t camera, const Frame& frame,
+                                         const Pose& T_world_camera) const noexcept;
 
   /// The newest image of every camera, all published at one instant. Cameras without a frame so far free nothing.
   /// t_ref is the newest exposure. The store must outlive the snapshot.

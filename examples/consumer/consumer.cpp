@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <exception>
 #include <iostream>
+#include <stdexcept>
 #include <vector>
 
 #include "depthgrid/input/control_points.hpp"
@@ -31,7 +32,10 @@ int main() try {
   const std::vector<std::uint16_t> pixels(320 * 240, 2000);  // a wall at 2 m
   depthgrid::Frame frame;
   frame.depth = depthgrid::depth_view(pixels, 320, 240, file.rig.cameras[0].metres_per_unit);
-  store.update(0, frame);
+  if (store.update(0, frame) != search::UpdateResult::taken) {
+    const char* reason = store.why_unusable(0, frame);
+    throw std::runtime_error(reason != nullptr ? reason : "all buffers are held");
+  }
 
   const depthgrid::input::ControlPoint point = depthgrid::input::parse_control_point("0,0,1.8", "wrist");
   const search::Primitive wrist = search::point(point.p_m);

@@ -9,9 +9,9 @@ search::Snapshot deliver(const SearchProblem& problem, search::ViewStore& store)
       continue;
     }
     if (problem.moved) {
-      store.update(k, problem.frames[k], problem.scene.rig.cameras[k].T_world_camera);
+      (void)store.update(k, problem.frames[k], problem.scene.rig.cameras[k].T_world_camera);
     } else {
-      store.update(k, problem.frames[k]);
+      (void)store.update(k, problem.frames[k]);
     }
   }
   return store.snapshot();

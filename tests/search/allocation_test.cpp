@@ -46,10 +46,10 @@ TEST(NoAllocation, FromImageToAnswer) {
       search.distances(empty, primitives, answers);
     }
     for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-      store.update(k, setup.frames[k]);
-      store.update(k, unusable);
-      store.update(k, setup.frames[k], problem.rig.cameras[k].T_world_camera);
-      store.update(99, setup.frames[k]);
+      (void)store.update(k, setup.frames[k]);
+      (void)store.update(k, unusable);
+      (void)store.update(k, setup.frames[k], problem.rig.cameras[k].T_world_camera);
+      (void)store.update(99, setup.frames[k]);
     }
     Snapshot snapshot = store.snapshot();
     Snapshot other = store.snapshot();

@@ -107,7 +107,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
     constexpr int kReaders = 3;
     ViewStore store(deliveries.setup.rig, deliveries.setup.settings, kReaders);
     for (std::size_t k = 0; k < kCameras; ++k) {
-      store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);
+      (void)store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);
     }
     std::atomic<bool> stop{false};
     std::atomic<int> dropped{0};
@@ -169,7 +169,7 @@ TEST(Threads, MayShareOneSnapshot) {
   const std::vector<Primitive> primitives = some_primitives();
   ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
   for (std::size_t k = 0; k < kCameras; ++k) {
-    store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);
+    (void)store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);
   }
   const Snapshot snapshot = store.snapshot();
   std::array<Told, 4> answered;

@@ -129,6 +129,35 @@ TEST(ViewStore, AnUnusableFrameFreesNothing) {
   EXPECT_EQ(store.update(99, Wall(1.0F).frame(), Pose::Identity()), UpdateResult::unusable) << "no such camera";
 }
 
+TEST(ViewStore, SaysWhyAFrameIsUnusable) {
+  ViewStore store(rig_of(2), settings_for(2));
+  const Wall wall(1.0F);
+  EXPECT_EQ(store.why_unusable(0, wall.frame()), nullptr);
+  EXPECT_EQ(store.why_unusable(1, wall.frame(), Pose::Identity()), nullptr);
+  const auto expect = [&](const char* words, const auto& change) {
+    Frame frame = wall.frame();
+    change(frame);
+    const char* reason = store.why_unusable(0, frame);
+    ASSERT_NE(reason, nullptr) << words;
+    EXPECT_NE(std::string(reason).find(words), std::string::npos) << reason;
+    EXPECT_EQ(store.update(0, frame), UpdateResult::unusable) << words;
+  };
+  const float some_m = 1.0F;
+  expect("no depth image", [](Frame& f) { f.depth.data = nullptr; });
+  expect("another size", [](Frame& f) { ++f.depth.width_px; });
+  expect("image's rows overlap", [](Frame& f) { f.depth.stride_bytes = 1; });
+  expect("only one of", [&](Frame& f) { f.robot.near_m = &some_m; });
+  expect("view's rows overlap", [&](Frame& f) { f.robot = {&some_m, &some_m, 1}; });
+  expect("another scale", [](Frame& f) {
+    f.depth.format = DepthFormat::uint16_units;
+    f.depth.metres_per_unit = 0.5;
+  });
+  EXPECT_NE(store.why_unusable(2, wall.frame()), nullptr) << "no such camera";
+  Pose broken = Pose::Identity();
+  broken.translation().x() = kNaN;
+  EXPECT_NE(store.why_unusable(0, wall.frame(), broken), nullptr);
+}
+
 TEST(ViewStore, MovesACameraWithItsFrame) {
   ViewStore store(rig_of(2), settings_for(2));
   const Wall wall(1.0F);
@@ -165,8 +194,8 @@ TEST(ViewStore, PoseMarginsFollowTheTimes) {
   settings.margins[1] = {{}, 0.03, 0.004, 0.015, 0.002};
   settings.max_frame_age_s = 0.05;
   ViewStore store(rig_of(3), settings);
-  store.update(0, Wall(1.0F, 100.0).frame());
-  store.update(1, Wall(1.0F, 99.96).frame());
+  (void)store.update(0, Wall(1.0F, 100.0).frame());
+  (void)store.update(1, Wall(1.0F, 99.96).frame());
   Snapshot snapshot = store.snapshot();
   EXPECT_EQ(snapshot.reference_time_s(), 100.0);
   EXPECT_EQ(snapshot.pose_margin(0).translation_m, 0.01);
@@ -176,16 +205,16 @@ TEST(ViewStore, PoseMarginsFollowTheTimes) {
   EXPECT_EQ(snapshot.pose_margin(1).rotation_rad, 0.004);
   EXPECT_NEAR(snapshot.pose_margin(1).time_m, 2 * (0.04 + 0.015 + 0.002), 1e-12);
   EXPECT_TRUE(snapshot.stale()) << "camera 2 is missing";
-  store.update(2, Wall(1.0F, 99.97).frame());
+  (void)store.update(2, Wall(1.0F, 99.97).frame());
   EXPECT_FALSE(store.snapshot().stale());
-  store.update(1, Wall(1.0F, 99.94).frame());
+  (void)store.update(1, Wall(1.0F, 99.94).frame());
   EXPECT_TRUE(store.snapshot().stale()) << "camera 1 is too old";
 }
 
 TEST(ViewStore, ACameraWithoutATimeFreesNothingThatMayMove) {
   for (const double time_s : {kNaN, kInf, -kInf}) {
     ViewStore store(rig_of(2), settings_for(2));
-    store.update(0, Wall(1.0F, 5.0).frame());
+    (void)store.update(0, Wall(1.0F, 5.0).frame());
     EXPECT_EQ(store.update(1, Wall(1.0F, time_s).frame()), UpdateResult::taken);
     const Snapshot snapshot = store.snapshot();
     EXPECT_EQ(snapshot.reference_time_s(), 5.0);
@@ -196,18 +225,18 @@ TEST(ViewStore, ACameraWithoutATimeFreesNothingThatMayMove) {
   Settings still = settings_for(2);
   still.v_max_m_s = 0;
   ViewStore store(rig_of(2), still);
-  store.update(0, Wall(1.0F, 5.0).frame());
-  store.update(1, Wall(1.0F, kNaN).frame());
+  (void)store.update(0, Wall(1.0F, 5.0).frame());
+  (void)store.update(1, Wall(1.0F, kNaN).frame());
   EXPECT_TRUE(store.snapshot().stale());
   EXPECT_EQ(store.snapshot().pose_margin(1).time_m, 0.0) << "nothing moves";
-  store.update(0, Wall(1.0F, kNaN).frame());
+  (void)store.update(0, Wall(1.0F, kNaN).frame());
   EXPECT_TRUE(std::isnan(store.snapshot().reference_time_s()));
 }
 
 TEST(ViewStore, TimesFarApartStayFinite) {
   ViewStore store(rig_of(2), settings_for(2));
-  store.update(0, Wall(1.0F, 1.7e308).frame());
-  store.update(1, Wall(1.0F, -1.7e308).frame());
+  (void)store.update(0, Wall(1.0F, 1.7e308).frame());
+  (void)store.update(1, Wall(1.0F, -1.7e308).frame());
   EXPECT_EQ(store.snapshot().pose_margin(0).time_m, 0.0);
   EXPECT_EQ(store.snapshot().pose_margin(1).time_m, 1e9);
 }
@@ -218,9 +247,9 @@ TEST(ViewStore, SixteenCamerasHaveBuffersOfTheirOwn) {
   for (std::size_t k = 0; k < 16; ++k) {
     // Different numbers of frames, so that every camera's newest buffer is another one.
     for (std::size_t n = 0; n <= k && held.size() < 13; ++n) {
-      store.update(k, Wall(static_cast<float>(100 * k + n + 1)).frame());
+      (void)store.update(k, Wall(static_cast<float>(100 * k + n + 1)).frame());
     }
-    store.update(k, Wall(static_cast<float>(1000 + k)).frame());
+    (void)store.update(k, Wall(static_cast<float>(1000 + k)).frame());
     if (held.size() < 13) {
       held.push_back(store.snapshot());
     }
@@ -242,10 +271,10 @@ TEST(ViewStore, AllocatesNothingAfterConstruction) {
   const test::AllocationGuard guard;
   std::optional<Snapshot> held;
   for (int n = 0; n < 4; ++n) {
-    store.update(0, wall.frame());
-    store.update(1, wall.frame(), moved);
-    store.update(1, wall.frame(), broken);
-    store.update(0, Frame{});
+    (void)store.update(0, wall.frame());
+    (void)store.update(1, wall.frame(), moved);
+    (void)store.update(1, wall.frame(), broken);
+    (void)store.update(0, Frame{});
     held.emplace(store.snapshot());
   }
   EXPECT_EQ(guard.allocations(), 0);
