@@ -9,7 +9,7 @@
 
 #include "goals.hpp"
 #include "machine.hpp"
-#include "markdown.hpp"
+#include "number_text.hpp"
 #include "our_figures.hpp"
 #include "page.hpp"
 #include "plots.hpp"

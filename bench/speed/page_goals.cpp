@@ -2,7 +2,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "markdown.hpp"
+#include "depthgrid/report/markdown_table.hpp"
+#include "number_text.hpp"
 #include "page_parts.hpp"
 
 namespace depthgrid::bench {
@@ -13,7 +14,7 @@ void write_goals(std::ostream& page, const std::vector<Goal>& all) {
   for (const WorkloadName& workload : kWorkloadNames) {
     head.insert(head.end(), {workload.title, "met"});
   }
-  MarkdownTable table(head);
+  report::MarkdownTable table(head);
   for (const Goal& goal : all) {
     std::vector<std::string> cells{goal.what, goal.bound_text};
     for (const double value : goal.values) {
@@ -21,7 +22,7 @@ void write_goals(std::ostream& page, const std::vector<Goal>& all) {
     }
     table.row(cells);
   }
-  page << table.text() << '\n';
+  page << table.text() << "\n\n";
 }
 
 void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report& report) {
@@ -33,9 +34,8 @@ void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report
   }
   page << missed << " of " << all.size()
        << " rows are missed on at least one workload. What one call does, in cubes of the octree that it opens and "
-          "exact "
-          "tests of a ball against one camera:\n\n";
-  MarkdownTable table({"question", "workload", "cameras", "µs (mean)", "cubes", "ball tests", "ns a cube"});
+          "exact tests of a ball against one camera:\n\n";
+  report::MarkdownTable table({"question", "workload", "cameras", "µs (mean)", "cubes", "ball tests", "ns a cube"});
   for (const auto& [workload, title] : kWorkloadNames) {
     for (const Record* row : report.group(std::string("ours, ") + workload)) {
       const double nodes = (*row)["nodes_mean"];
@@ -46,7 +46,7 @@ void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report
       }
     }
   }
-  page << table.text() << '\n';
+  page << table.text() << "\n\n";
 }
 
 }  // namespace depthgrid::bench

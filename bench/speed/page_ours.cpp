@@ -1,7 +1,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "markdown.hpp"
+#include "depthgrid/report/markdown_table.hpp"
+#include "number_text.hpp"
 #include "page_parts.hpp"
 
 namespace depthgrid::bench {
@@ -14,7 +15,7 @@ void write_rates(std::ostream& page, const Report& report) {
   for (const auto& [workload, title] : kWorkloadNames) {
     const auto rows = report.group(std::string("ours, ") + workload);
     page << "On " << title << ":\n\n";
-    MarkdownTable table(
+    report::MarkdownTable table(
         {"question", "cameras", "a second", "median", "99 %", "99.9 %", "largest", "first after a frame set", "calls"});
     for (const Record* row : rows) {
       const Record& r = *row;
@@ -24,16 +25,15 @@ void write_rates(std::ostream& page, const Report& report) {
                    milliseconds(r["first_median_s"]), whole(r["call_count"])});
       }
     }
-    page << table.text() << '\n';
+    page << table.text() << "\n\n";
   }
 }
 
 void write_errors(std::ostream& page, const Report& report) {
   page << "Errors against the oracle that knows the same margins, in mm (too near: the price of the resolution and of "
-          "seams "
-          "between the cameras' views):\n\n";
-  MarkdownTable errors({"workload", "cameras", "answers", "too far: largest", "too near: median", "95 %", "99 %",
-                        "largest", "nearest is a measured surface"});
+          "seams between the cameras' views):\n\n";
+  report::MarkdownTable errors({"workload", "cameras", "answers", "too far: largest", "too near: median", "95 %",
+                                "99 %", "largest", "nearest is a measured surface"});
   for (const auto& [workload, title] : kWorkloadNames) {
     for (const Record* row : report.group(std::string("ours, ") + workload)) {
       const Record& r = *row;
@@ -44,13 +44,13 @@ void write_errors(std::ostream& page, const Report& report) {
       }
     }
   }
-  page << errors.text() << '\n';
+  page << errors.text() << "\n\n";
 }
 
 void write_letter(std::ostream& page, const Report& report) {
   page << "Beside `letter`, in turns on the same points, ms for nine points (median):\n\n";
-  MarkdownTable letter({"workload", "cameras", "search", "search, hybrid", "letter, hybrid", "letter, minimum",
-                        "letter, hybrid / search, hybrid", "letter, minimum / search"});
+  report::MarkdownTable letter({"workload", "cameras", "search", "search, hybrid", "letter, hybrid", "letter, minimum",
+                                "letter, hybrid / search, hybrid", "letter, minimum / search"});
   for (const WorkloadName& workload : kWorkloadNames) {
     for (const double cameras : {1.0, 2.0, 4.0, 8.0}) {
       const auto time_s = [&, key = std::string(workload.key)](const char* name) {
@@ -65,19 +65,20 @@ void write_letter(std::ostream& page, const Report& report) {
       }
     }
   }
-  page << letter.text() << '\n';
+  page << letter.text() << "\n\n";
 }
 
 void write_adversarial(std::ostream& page, const Report& report) {
   page << "Frames that no scene gives, nine points, ms:\n\n";
-  MarkdownTable adversarial({"case", "cameras", "budget", "median", "largest", "answers that the budget stopped"});
+  report::MarkdownTable adversarial(
+      {"case", "cameras", "budget", "median", "largest", "answers that the budget stopped"});
   for (const Record* row : report.group("adversarial")) {
     const Record& r = *row;
     adversarial.row({r.name, whole(r["cameras"]), r["budget_s"] > 0 ? milliseconds(r["budget_s"]) : "none",
                      milliseconds(r["call_median_s"]), milliseconds(r["call_max_s"]),
                      r["budget_s"] > 0 ? whole(100 * r["stopped_share"]) + " %" : "-"});
   }
-  page << adversarial.text() << '\n';
+  page << adversarial.text() << "\n\n";
 }
 
 }  // namespace

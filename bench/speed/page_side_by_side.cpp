@@ -2,7 +2,8 @@
 #include <sstream>
 #include <utility>
 
-#include "markdown.hpp"
+#include "depthgrid/report/markdown_table.hpp"
+#include "number_text.hpp"
 #include "page_parts.hpp"
 
 namespace depthgrid::bench {
@@ -17,9 +18,9 @@ std::string errors_text(const Record& r, const std::string& side) {
 
 void write_table(std::ostream& page, const Report& report, const std::string& workload, double cameras,
                  const std::string& title) {
-  MarkdownTable table({"", "prepare ms: median / max", "nine µs: median / max", "100 points µs", "nothing near µs",
-                       "deep µs", "cycle ms", "cycle in ours", "MB", "occluded counts", "carved by others",
-                       "too far mm: median / 95 % / max", "too near mm: the same"});
+  report::MarkdownTable table({"", "prepare ms: median / max", "nine µs: median / max", "100 points µs",
+                               "nothing near µs", "deep µs", "cycle ms", "cycle in ours", "MB", "occluded counts",
+                               "carved by others", "too far mm: median / 95 % / max", "too near mm: the same"});
   bool any = false;
   for (const Record* row : report.group("side by side, " + workload)) {
     const Record& r = *row;
@@ -35,7 +36,7 @@ void write_table(std::ostream& page, const Report& report, const std::string& wo
                errors_text(r, "over"), errors_text(r, "under")});
   }
   if (any) {
-    page << "### " << title << "\n\n" << table.text() << '\n';
+    page << "### " << title << "\n\n" << table.text() << "\n\n";
   }
 }
 

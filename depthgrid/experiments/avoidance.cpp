@@ -5,7 +5,8 @@
 
 #include "depthgrid/experiments/avoidance_run.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
+#include "depthgrid/experiments/number_text.hpp"
+#include "depthgrid/report/markdown_table.hpp"
 #include "depthgrid/report/plot.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 
@@ -159,19 +160,17 @@ std::string causes(const RunResult& run) {
 
 void report_comparison(const Comparison& comparison, const std::vector<Eigen::Vector3d>& hexagon,
                        ExperimentReport& report) {
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table({"method", "smallest true distance to the person, m", "contacts", "in contact, s",
+                               "vertices reached", "s per vertex", "stopped, s",
+                               "stopped with nothing within 0.4 m, s"});
   for (const auto& [method, run] : comparison.runs) {
-    rows.push_back({std::string(title(method)), fixed(run.smallest_person_m, 3), causes(run),
-                    fixed(run.in_contact_s, 2), std::to_string(run.vertices),
-                    run.vertices > 0 ? fixed(run.duration_s / run.task_share, 3) : "-", fixed(run.stopped_s, 2),
-                    fixed(run.false_stop_s, 2)});
+    table.row({std::string(title(method)), fixed(run.smallest_person_m, 3), causes(run), fixed(run.in_contact_s, 2),
+               std::to_string(run.vertices), run.vertices > 0 ? fixed(run.duration_s / run.task_share, 3) : "-",
+               fixed(run.stopped_s, 2), fixed(run.false_stop_s, 2)});
     report.figures()[comparison.sensor][std::string(key(method))] = figures_of(run);
   }
   report.paragraph("## " + comparison.sensor + " sensor");
-  report.paragraph(
-      markdown_table({"method", "smallest true distance to the person, m", "contacts", "in contact, s",
-                      "vertices reached", "s per vertex", "stopped, s", "stopped with nothing within 0.4 m, s"},
-                     rows));
+  report.paragraph(table.text());
   report.picture("paths-" + comparison.sensor + ".png", picture_of_paths(comparison, hexagon),
                  "The end effector's path (red) and the hexagon (blue), seen along its normal.");
   report.picture(

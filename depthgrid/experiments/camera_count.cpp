@@ -143,9 +143,7 @@ LinearFit linear_fit(const std::vector<CameraCount>& counts, std::size_t method)
 }
 
 std::vector<CameraCount> measure_camera_counts(const Options& options) {
-  simulation::PersonStage place;
-  place.robot_world = {0, -0.15, 0.65};
-  StagedCell stage(Motion::reach, place, options.seed);
+  StagedCell stage(Motion::reach, stage_around_the_wrist(), options.seed);
   const int width_px = width_or(options, 640, 320);
   const int frames = frames_or(options, 16, 8);
   std::vector<Setup> setups;

@@ -3,7 +3,8 @@
 
 #include "depthgrid/experiments/camera_count.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
+#include "depthgrid/experiments/number_text.hpp"
+#include "depthgrid/report/markdown_table.hpp"
 #include "depthgrid/report/plot.hpp"
 
 namespace depthgrid::experiments {
@@ -59,16 +60,16 @@ std::string time_table(const std::vector<CameraCount>& counts) {
     head.push_back(method.label + ", ms");
     head.emplace_back("to two cameras");
   }
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table(head);
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    std::vector<std::string>& row = rows.emplace_back();
-    row.push_back(std::to_string(counts[i].cameras));
+    std::vector<std::string> row{std::to_string(counts[i].cameras)};
     for (std::size_t method = 0; method < kCountedMethods; ++method) {
       row.push_back(milliseconds(counts[i].methods[method].evaluation_s));
       row.push_back(fixed(time_ratio(counts, method, i), 2));
     }
+    table.row(row);
   }
-  return markdown_table(head, rows);
+  return table.text();
 }
 
 std::string preparation_table(const std::vector<CameraCount>& counts) {
@@ -76,15 +77,15 @@ std::string preparation_table(const std::vector<CameraCount>& counts) {
   for (const CountedMethod& method : counts[0].methods) {
     head.push_back(method.label + ", ms");
   }
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table(head);
   for (const CameraCount& count : counts) {
-    std::vector<std::string>& row = rows.emplace_back();
-    row.push_back(std::to_string(count.cameras));
+    std::vector<std::string> row{std::to_string(count.cameras)};
     for (const CountedMethod& method : count.methods) {
       row.push_back(milliseconds(method.update_s));
     }
+    table.row(row);
   }
-  return markdown_table(head, rows);
+  return table.text();
 }
 
 std::string pockets_text(const CountedMethod& method) {
@@ -92,19 +93,18 @@ std::string pockets_text(const CountedMethod& method) {
 }
 
 std::string left_table(const std::vector<CameraCount>& counts) {
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table({"cameras", "gray, workspace", "gray, within 0.4 m of the arm", "pockets, letter",
+                               "pockets, search", "> 100 mm too near, letter", "the same, search",
+                               "> 10 mm too far, letter", "the same, search"});
   for (const CameraCount& count : counts) {
     const CountedMethod& search = count.methods[kCountedSearch];
     const CountedMethod& letter = count.methods[kCountedLetter];
-    rows.push_back({std::to_string(count.cameras), percent(count.gray.share()), percent(count.gray.share_near()),
-                    pockets_text(letter), pockets_text(search), percent(letter.deviation.false_obstacles()),
-                    percent(search.deviation.false_obstacles()), percent(letter.deviation.overestimates()),
-                    percent(search.deviation.overestimates())});
+    table.row({std::to_string(count.cameras), percent(count.gray.share()), percent(count.gray.share_near()),
+               pockets_text(letter), pockets_text(search), percent(letter.deviation.false_obstacles()),
+               percent(search.deviation.false_obstacles()), percent(letter.deviation.overestimates()),
+               percent(search.deviation.overestimates())});
   }
-  return markdown_table(
-      {"cameras", "gray, workspace", "gray, within 0.4 m of the arm", "pockets, letter", "pockets, search",
-       "> 100 mm too near, letter", "the same, search", "> 10 mm too far, letter", "the same, search"},
-      rows);
+  return table.text();
 }
 
 }  // namespace
@@ -112,9 +112,8 @@ std::string left_table(const std::vector<CameraCount>& counts) {
 void run_camera_count(const Options& options, ExperimentReport& report) {
   report.paragraph(
       "One to eight cameras: the letter's first one; its two; from three on a circle around the robot. A person "
-      "reaches "
-      "for the moving arm, sensors are ideal, the space behind the robot counts as unknown. The letter states that its "
-      "computations grow linearly with the number of cameras.");
+      "reaches for the moving arm, sensors are ideal, the space behind the robot counts as unknown. The letter states "
+      "that its computations grow linearly with the number of cameras.");
   const std::vector<CameraCount> counts = measure_camera_counts(options);
   const std::size_t last = counts.size() - 1;
   std::string growth = "From two to eight cameras the time of an evaluation grows";
@@ -138,16 +137,14 @@ void run_camera_count(const Options& options, ExperimentReport& report) {
   report.paragraph(time_table(counts));
   report.paragraph(
       "With one camera the nearest obstacle is the robot's own shadow, so the scan ends early: straight lines are "
-      "fitted "
-      "from two cameras on.");
+      "fitted from two cameras on.");
   report.paragraph("Processor time to prepare the images of one instant, all cameras:");
   report.paragraph(preparation_table(counts));
   report.paragraph(left_table(counts));
   report.paragraph(
       "*pockets*: points of the robot's surface (grown by the padding of its removal) that read less than 10 mm though "
       "nothing is within 100 mm. Instants at which the person is inside that padding are left out of the comparison: "
-      "no "
-      "method can see them there.");
+      "no method can see them there.");
   for (const CameraCount& count : counts) {
     auto& json = report.figures()["cameras"][std::to_string(count.cameras)];
     json["gray_share"] = count.gray.share();

@@ -8,8 +8,9 @@
 
 #include "depthgrid/experiments/campaign_totals.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
+#include "depthgrid/experiments/number_text.hpp"
 #include "depthgrid/experiments/plate_scene.hpp"
+#include "depthgrid/report/markdown_table.hpp"
 #include "depthgrid/report/plot.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 
@@ -97,9 +98,8 @@ void say_what_was_done(const CampaignPlan& plan, const CampaignState& state, Exp
       " ms late; commands every 2 ms, distances every " + fixed(2.0 * plan.common.evaluate_every) +
       " ms. The person does not avoid the robot, and walks into it where its script leads. Truth: exact distances "
       "between bodies, every 2 ms. The letter asks nine points, repels the end effector by the mean (11) as printed "
-      "and "
-      "limits the body by the risk; the search asks the links' capsules, repels by the corrected direction and limits "
-      "all of them by approach rows (gain " +
+      "and limits the body by the risk; the search asks the links' capsules, repels by the corrected direction and "
+      "limits all of them by approach rows (gain " +
       fixed(plan.common.approach_gain_per_s, 1) + " 1/s, stop " + fixed(plan.common.approach_stop_m, 2) +
       " m), with v_max = " + fixed(plan.common.v_max_m_s, 1) +
       " m/s. All that nobody sees is an obstacle to it; in the last row pockets of up to " +
@@ -133,19 +133,18 @@ ordered_json figures_of_totals(Method method, const MethodTotals& sum, double al
 
 void report_totals(const std::map<Method, MethodTotals>& sums, const std::map<Method, double>& alone,
                    ExperimentReport& report) {
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table({"method", "motions with contact", "contacts by cause",
+                               "fastest robot point at a contact's beginning, towards the person, m/s",
+                               "while contacts lasted, m/s", "median of the smallest distances, m", "s per vertex",
+                               "with nobody there", "stopped", "stopped with nothing within 0.4 m"});
   for (const auto& [method, sum] : sums) {
-    rows.push_back({std::string(title(method)), std::to_string(sum.with_contact) + " of " + std::to_string(sum.motions),
-                    causes_text(sum), fixed(sum.worst_robot_m_s, 2), fixed(sum.worst_during_m_s, 2),
-                    fixed(sum.median_smallest_m, 3), fixed(sum.s_per_vertex, 3), fixed(alone.at(method), 3),
-                    percent(sum.stopped_share), percent(sum.false_stop_share)});
+    table.row({std::string(title(method)), std::to_string(sum.with_contact) + " of " + std::to_string(sum.motions),
+               causes_text(sum), fixed(sum.worst_robot_m_s, 2), fixed(sum.worst_during_m_s, 2),
+               fixed(sum.median_smallest_m, 3), fixed(sum.s_per_vertex, 3), fixed(alone.at(method), 3),
+               percent(sum.stopped_share), percent(sum.false_stop_share)});
     report.figures()[std::string(key(method))] = figures_of_totals(method, sum, alone.at(method));
   }
-  report.paragraph(markdown_table({"method", "motions with contact", "contacts by cause",
-                                   "fastest robot point at a contact's beginning, towards the person, m/s",
-                                   "while contacts lasted, m/s", "median of the smallest distances, m", "s per vertex",
-                                   "with nobody there", "stopped", "stopped with nothing within 0.4 m"},
-                                  rows));
+  report.paragraph(table.text());
   report.paragraph(
       "touched_from_the_start: the motion began so, and no speed is known. robot_stood: the touched point came nearer "
       "at no more than 0.05 m/s. faster_than_v_max: so did not, but the person came faster than the search was told. "

@@ -35,6 +35,12 @@ void draw_tile(report::Canvas& canvas, const report::Rectangle& area, const Answ
 
 }  // namespace
 
+AnswerTile answer_tile(std::string title, const CameraImages& images, std::size_t camera, const Instant& instant,
+                       std::size_t candidate) {
+  return {std::move(title), &images.rig().cameras[camera], &images.depth_m(camera), &instant,
+          &instant.answers[candidate]};
+}
+
 report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles, const std::vector<report::Plot>& plots) {
   const std::size_t columns = std::min(kColumns, tiles.size());
   const std::size_t rows = (tiles.size() + columns - 1) / columns;

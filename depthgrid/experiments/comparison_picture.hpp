@@ -19,6 +19,11 @@ struct AnswerTile {
   const std::vector<Proximity>* answers = nullptr;  ///< one a point of the instant; null: none is drawn
 };
 
+/// What a camera of `images` sees now, which is the time of `instant`, and one candidate's answers then. Both must
+/// outlive the tile.
+[[nodiscard]] AnswerTile answer_tile(std::string title, const CameraImages& images, std::size_t camera,
+                                     const Instant& instant, std::size_t candidate);
+
 /// The tiles side by side, at most three in a row, with the meaning of the colours below; `plots` under them.
 [[nodiscard]] report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles,
                                              const std::vector<report::Plot>& plots);

@@ -1,13 +1,12 @@
 #include "depthgrid/experiments/hidden_hand.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
+#include <utility>
 
 #include "depthgrid/experiments/comparison_picture.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
-#include "depthgrid/experiments/method_comparison.hpp"
+#include "depthgrid/experiments/number_text.hpp"
 #include "depthgrid/experiments/rig_width.hpp"
 #include "depthgrid/experiments/two_views.hpp"
 
@@ -39,11 +38,11 @@ const std::vector<Candidate>& hand_candidates() {
 }
 
 // Their places in the list.
-constexpr std::size_t kLetterBlind = 0;
-constexpr std::size_t kLetterOne = 4;
-constexpr std::size_t kSearchOne = 6;
-constexpr std::size_t kLetterTwo = 7;
-constexpr std::size_t kSearchTwo = 9;
+constexpr std::size_t kHandLetterBlind = 0;
+constexpr std::size_t kHandLetterOne = 4;
+constexpr std::size_t kHandSearchOne = 6;
+constexpr std::size_t kHandLetterTwo = 7;
+constexpr std::size_t kHandSearchTwo = 9;
 
 /// Around the standing arm.
 simulation::PersonStage stage_behind(const Eigen::Vector3d& robot_world, const Eigen::Vector3d& camera_world) {
@@ -54,30 +53,29 @@ simulation::PersonStage stage_behind(const Eigen::Vector3d& robot_world, const E
 }
 
 /// The instant at which the hand is nearest, as each camera sees it, and the way the smallest distance went.
-void draw(const std::vector<Instant>& instants, StagedCell& stage, MethodComparison& comparison,
-          ExperimentReport& report) {
+void draw_hidden_hand(const std::vector<Instant>& instants, StagedCell& stage, MethodComparison& comparison,
+                      ExperimentReport& report) {
   const auto nearest = std::min_element(instants.begin(), instants.end(), [](const Instant& a, const Instant& b) {
     return a.person_to_arm_m < b.person_to_arm_m;
   });
   stage.move_person_to(nearest->time_s);
   const Instant instant = comparison.at(stage, nearest->time_s, 0);
   const CameraImages& images = comparison.images(RobotPixels::behind_unknown);
-  const auto tile = [&](std::string title, std::size_t camera, std::size_t candidate) {
-    return AnswerTile{std::move(title), &images.rig().cameras[camera], &images.depth_m(camera), &instant,
-                      &instant.answers[candidate]};
+  const auto tile = [&](const char* title, std::size_t camera, std::size_t candidate) {
+    return answer_tile(title, images, camera, instant, candidate);
   };
   report::Plot plot{"distance from the control point that hides the hand", "time (s)", "m", false, false, {}};
   plot.series.push_back(point_truth(instants, kPointBeforeHand, DistanceMethod::kRho));
-  plot.series.push_back(point_answers(instants, kLetterBlind, kPointBeforeHand, "letter, 1 camera *"));
-  plot.series.push_back(point_answers(instants, kLetterOne, kPointBeforeHand, "letter, 1 camera"));
-  plot.series.push_back(point_answers(instants, kSearchOne, kPointBeforeHand, "search, 1 camera"));
-  plot.series.push_back(point_answers(instants, kLetterTwo, kPointBeforeHand, "letter, 2 cameras"));
-  plot.series.push_back(point_answers(instants, kSearchTwo, kPointBeforeHand, "search, 2 cameras"));
+  plot.series.push_back(point_answers(instants, kHandLetterBlind, kPointBeforeHand, "letter, 1 camera *"));
+  plot.series.push_back(point_answers(instants, kHandLetterOne, kPointBeforeHand, "letter, 1 camera"));
+  plot.series.push_back(point_answers(instants, kHandSearchOne, kPointBeforeHand, "search, 1 camera"));
+  plot.series.push_back(point_answers(instants, kHandLetterTwo, kPointBeforeHand, "letter, 2 cameras"));
+  plot.series.push_back(point_answers(instants, kHandSearchTwo, kPointBeforeHand, "search, 2 cameras"));
   report.picture(
       "hidden-hand.png",
-      draw_comparison({tile("camera 1: letter, it alone *", kFirstCamera, kLetterBlind),
-                       tile("camera 1: search, it alone", kFirstCamera, kSearchOne),
-                       tile("camera 2: letter, both", kOppositeCamera, kLetterTwo)},
+      draw_comparison({tile("camera 1: letter, it alone *", kFirstCamera, kHandLetterBlind),
+                       tile("camera 1: search, it alone", kFirstCamera, kHandSearchOne),
+                       tile("camera 2: letter, both", kOppositeCamera, kHandLetterTwo)},
                       {plot}),
       "Above: the instant at which the hand is nearest. Points on the arm and lines to what each method takes "
       "for the nearest obstacle; a ring: nothing within 0.4 m. *: robot = background. Below: the control "
@@ -86,50 +84,30 @@ void draw(const std::vector<Instant>& instants, StagedCell& stage, MethodCompari
 
 }  // namespace
 
-HiddenHandFigures measure_hidden_hand(const Options& options, ExperimentReport* pictures) {
+GroupedDeviations measure_hidden_hand(const Options& options, ExperimentReport* pictures) {
   const simulation::Arrangement arrangement = simulation::letter_arrangement("ideal");
   const Rig rig = with_width(arrangement.rig, width_or(options, 640, 320));
   const Eigen::Vector3d before_hand_world = ArmAtWork().points_world()[kPointBeforeHand];
   StagedCell stage(Motion::hand_behind_robot,
                    stage_behind(before_hand_world, rig.cameras.front().T_world_camera.translation()), options.seed);
   MethodComparison comparison(stage, rig, arrangement, hand_candidates(), {});
-  HiddenHandFigures figures;
-  figures.person_to_arm_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : hand_candidates()) {
-    figures.hand_near.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
-    figures.otherwise.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
-  }
-  const int frames = frames_or(options, 100, 40);
-  std::vector<Instant> instants;
-  for (int frame = 0; frame < frames; ++frame) {
-    const double time_s = stage.person().duration_s() * (frame + 0.5) / frames;
-    stage.move_person_to(time_s);
-    instants.push_back(comparison.at(stage, time_s, static_cast<std::uint64_t>(frame)));
-    const Instant& instant = instants.back();
-    figures.person_to_arm_m = std::min(figures.person_to_arm_m, instant.person_to_arm_m);
-    auto& rows = instant.person_to_arm_m < kHandNear ? figures.hand_near : figures.otherwise;
-    for (std::size_t c = 0; c < hand_candidates().size(); ++c) {
-      for (std::size_t i = 0; i < instant.truth.size(); ++i) {
-        rows[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
-      }
-    }
-    options.progress(static_cast<std::size_t>(frame) + 1, static_cast<std::size_t>(frames));
-  }
+  GroupedInstants measured = measure_groups(
+      stage, comparison, {0, stage.person().duration_s(), frames_or(options, 100, 40)}, &StagedCell::move_person_to,
+      [](const Instant& instant) { return instant.person_to_arm_m < kHandNear; }, options.progress);
   if (pictures != nullptr) {
-    draw(instants, stage, comparison, *pictures);
+    draw_hidden_hand(measured.instants, stage, comparison, *pictures);
   }
-  return figures;
+  return std::move(measured.figures);
 }
 
 void run_hidden_hand(const Options& options, ExperimentReport& report) {
   report.paragraph(
       "The arm stands. A person beyond it brings a hand to where the arm hides it from camera 1, as in Figs. 9 and 13 "
-      "of "
-      "the letter. The second camera stands opposite the first. Sensors are ideal. Distances from nine points on the "
-      "arm's axis up to 0.4 m, beside the real ones.");
-  const HiddenHandFigures figures = measure_hidden_hand(options, &report);
+      "of the letter. The second camera stands opposite the first. Sensors are ideal. Distances from nine points on "
+      "the arm's axis up to 0.4 m, beside the real ones.");
+  const GroupedDeviations figures = measure_hidden_hand(options, &report);
   const auto too_far = [&](std::size_t candidate) {
-    const Deviation& deviation = figures.hand_near[candidate].deviation;
+    const Deviation& deviation = figures.chosen[candidate].deviation;
     return percent(deviation.overestimates()) + " of the answers, " + fixed(1000 * deviation.largest_overestimate_m()) +
            " mm at most";
   };
@@ -137,26 +115,20 @@ void run_hidden_hand(const Options& options, ExperimentReport& report) {
       "The hand comes as near as " + fixed(figures.person_to_arm_m, 2) +
       " m to the arm. While it is near, the letter's method with camera 1 alone and the robot's pixels taken "
       "for background is more than 10 mm too far in " +
-      too_far(kLetterBlind) + "; with two cameras in " + too_far(kLetterTwo) + "; the search with one in " +
-      too_far(kSearchOne) + ", with two in " + too_far(kSearchTwo) + ".");
+      too_far(kHandLetterBlind) + "; with two cameras in " + too_far(kHandLetterTwo) + "; the search with one in " +
+      too_far(kHandSearchOne) + ", with two in " + too_far(kHandSearchTwo) + ".");
   report.headline(
       "With one camera and the space behind the robot unknown, the search has a false obstacle (more than "
       "100 mm too near) at " +
-      percent(figures.otherwise[kSearchOne].deviation.false_obstacles()) +
+      percent(figures.otherwise[kHandSearchOne].deviation.false_obstacles()) +
       " of the points while nobody is near, with two cameras at " +
-      percent(figures.otherwise[kSearchTwo].deviation.false_obstacles()) + ".");
-  report.paragraph("While the person is nearer than " + fixed(kHandNear, 2) + " m to the arm:");
-  report.paragraph(deviation_table(figures.hand_near));
-  report.paragraph("At all other instants:");
-  report.paragraph(deviation_table(figures.otherwise));
+      percent(figures.otherwise[kHandSearchTwo].deviation.false_obstacles()) + ".");
+  report_groups(figures, "While the person is nearer than " + fixed(kHandNear, 2) + " m to the arm:", "hand_near",
+                report);
   report.paragraph(
       "*robot = background*: pixels of the robot are replaced by the empty room in all images, as if nothing could "
-      "stand "
-      "behind it; then no further camera helps, because the first one claims to have seen the hand's place free. The "
-      "other rows take the space behind the robot for unknown (the letter's case (iv)).");
-  report.figures()["person_to_arm_smallest_m"] = figures.person_to_arm_m;
-  report.figures()["hand_near"] = deviation_figures(figures.hand_near);
-  report.figures()["otherwise"] = deviation_figures(figures.otherwise);
+      "stand behind it; then no further camera helps, because the first one claims to have seen the hand's place free. "
+      "The other rows take the space behind the robot for unknown (the letter's case (iv)).");
 }
 
 }  // namespace depthgrid::experiments

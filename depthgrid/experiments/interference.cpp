@@ -6,9 +6,11 @@
 
 #include "depthgrid/experiments/comparison_picture.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
+#include "depthgrid/experiments/instant_groups.hpp"
 #include "depthgrid/experiments/method_comparison.hpp"
+#include "depthgrid/experiments/number_text.hpp"
 #include "depthgrid/experiments/rig_width.hpp"
+#include "depthgrid/report/markdown_table.hpp"
 
 namespace depthgrid::experiments {
 
@@ -75,11 +77,7 @@ struct CaseRun {
 /// Adds the last instant of a run.
 void count_answers(CaseRun& run, int frames) {
   const Instant& instant = run.instants.back();
-  for (std::size_t c = 0; c < run.figures.methods.size(); ++c) {
-    for (std::size_t i = 0; i < instant.truth.size(); ++i) {
-      run.figures.methods[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
-    }
-  }
+  add_answers(instant, run.figures.methods);
   const auto& answers = instant.answers[kSearchCandidate];
   const auto unmeasured = std::count_if(answers.begin(), answers.end(), [](const Proximity& answer) {
     return answer.state == ProximityState::unmeasured;
@@ -90,15 +88,11 @@ void count_answers(CaseRun& run, int frames) {
 
 CaseRun run_case(const Setting& setting, const simulation::Arrangement& arrangement, const Rig& rig, int frames,
                  std::uint64_t seed, const std::function<void(int)>& done) {
-  simulation::PersonStage place;
-  place.robot_world = {0, -0.15, 0.65};
-  StagedCell stage(Motion::reach, place, seed);
+  StagedCell stage(Motion::reach, stage_around_the_wrist(), seed);
   MethodComparison comparison(stage, rig, arrangement, interference_candidates(), noise(setting, seed));
   CaseRun run;
   run.figures.label = setting.label;
-  for (const Candidate& candidate : interference_candidates()) {
-    run.figures.methods.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
-  }
+  run.figures.methods = empty_rows(comparison.candidates());
   for (int frame = 0; frame < frames; ++frame) {
     const double time_s = stage.person().duration_s() * (frame + 0.5) / frames;
     stage.move_to(time_s);
@@ -164,10 +158,9 @@ std::vector<InterferenceCase> measure_interference(const Options& options, Exper
 void run_interference(const Options& options, ExperimentReport& report) {
   report.paragraph(
       "Two Kinects, 45 degrees apart around the robot, look at a person who reaches for it, as in Fig. 14 of the "
-      "letter. "
-      "**What is lost is assumed, not found**: of the pixels that the other Kinect lights too 3.57 % in spots of 5 "
-      "pixels, 0.28 % when one of the two vibrates (after Maimone and Fuchs, VR 2012). Cameras that face each other "
-      "light few surfaces in common and would show little of it.");
+      "letter. **What is lost is assumed, not found**: of the pixels that the other Kinect lights too 3.57 % in spots "
+      "of 5 pixels, 0.28 % when one of the two vibrates (after Maimone and Fuchs, VR 2012). Cameras that face each "
+      "other light few surfaces in common and would show little of it.");
   const std::vector<InterferenceCase> cases = measure_interference(options, &report);
   report.headline("Without measurement in the first camera's images: " + percent(cases[0].invalid_share[0]) +
                   " of the pixels alone, " + percent(cases[1].invalid_share[0]) + " with a second Kinect beside it, " +
@@ -184,20 +177,19 @@ void run_interference(const Options& options, ExperimentReport& report) {
   };
   report.headline("Half of the letter's distances then are more than " + medians(kLetter) +
                   " too near, half of the search's more than " + medians(kSearchCandidate) + ".");
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table({"Kinects", "without measurement, camera 1", "camera 2",
+                               "free nothing with the lateral margin, camera 1", "camera 2",
+                               "nearest for the search: an unmeasured pixel's ray"});
   for (const InterferenceCase& c : cases) {
-    rows.push_back({c.label, percent(c.invalid_share[0]), percent(c.invalid_share[1]), percent(c.blocked_share[0]),
-                    percent(c.blocked_share[1]), percent(c.unmeasured_share)});
+    table.row({c.label, percent(c.invalid_share[0]), percent(c.invalid_share[1]), percent(c.blocked_share[0]),
+               percent(c.blocked_share[1]), percent(c.unmeasured_share)});
     auto& json = report.figures()[c.label];
     json["invalid_share"] = c.invalid_share;
     json["free_nothing_share"] = c.blocked_share;
     json["search_nearest_unmeasured_share"] = c.unmeasured_share;
     json["distances"] = deviation_figures(c.methods);
   }
-  report.paragraph(markdown_table(
-      {"Kinects", "without measurement, camera 1", "camera 2", "free nothing with the lateral margin, camera 1",
-       "camera 2", "nearest for the search: an unmeasured pixel's ray"},
-      rows));
+  report.paragraph(table.text());
   report.paragraph(
       "Distances with both cameras from nine points of the arm, up to 0.4 m, beside the real ones. The robot's pixels "
       "count as background, so that its own shadows do not cover what the noise does.");

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "depthgrid/experiments/comparison_picture.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
-#include "depthgrid/experiments/method_comparison.hpp"
+#include "depthgrid/experiments/number_text.hpp"
 #include "depthgrid/experiments/rig_width.hpp"
 #include "depthgrid/experiments/two_views.hpp"
 
@@ -43,12 +43,12 @@ const std::vector<Candidate>& shadow_candidates() {
 }
 
 // Their places in the list.
-constexpr std::size_t kLetterOne = 0;
-constexpr std::size_t kLetterTwo = 1;
-constexpr std::size_t kSearchTwo = 5;
-constexpr std::size_t kLetterTwoUnknown = 7;
-constexpr std::size_t kSearchTwoUnknown = 9;
-constexpr std::size_t kSearchThree = 13;
+constexpr std::size_t kShadowLetterOne = 0;
+constexpr std::size_t kShadowLetterTwo = 1;
+constexpr std::size_t kShadowSearchTwo = 5;
+constexpr std::size_t kShadowLetterTwoUnknown = 7;
+constexpr std::size_t kShadowSearchTwoUnknown = 9;
+constexpr std::size_t kShadowSearchThree = 13;
 
 constexpr double kStep = 0.05;   ///< seconds between the instants that are looked at for the shadow
 constexpr double kBefore = 1.5;  ///< seconds of the motion that are looked at before and after the shadow
@@ -73,12 +73,6 @@ Window shadow_window(StagedCell& stage, const Eigen::Vector3d& camera_world) {
   return {std::max(0.0, window.begin_s - kBefore), std::min(stage.person().duration_s(), window.end_s + kBefore)};
 }
 
-simulation::PersonStage stage_around_the_wrist() {
-  simulation::PersonStage stage;
-  stage.robot_world = {0, -0.15, 0.65};
-  return stage;
-}
-
 /// How much too near the answers of a candidate are in all, metres.
 double too_near_m(const Instant& instant, std::size_t candidate) {
   double sum_m = 0;
@@ -89,32 +83,31 @@ double too_near_m(const Instant& instant, std::size_t candidate) {
 }
 
 /// The instant of the worst shadow, as camera 1 sees it, and the way the smallest distance went.
-void draw(const std::vector<Instant>& instants, StagedCell& stage, MethodComparison& comparison,
-          ExperimentReport& report) {
+void draw_shadow(const std::vector<Instant>& instants, StagedCell& stage, MethodComparison& comparison,
+                 ExperimentReport& report) {
   const auto worst = std::max_element(instants.begin(), instants.end(), [](const Instant& a, const Instant& b) {
-    return too_near_m(a, kLetterOne) < too_near_m(b, kLetterOne);
+    return too_near_m(a, kShadowLetterOne) < too_near_m(b, kShadowLetterOne);
   });
   stage.move_to(worst->time_s);
   const Instant instant = comparison.at(stage, worst->time_s, 0);
   const CameraImages& images = comparison.images(RobotPixels::behind_unknown);
-  const auto tile = [&](std::string title, std::size_t camera, std::size_t candidate) {
-    return AnswerTile{std::move(title), &images.rig().cameras[camera], &images.depth_m(camera), &instant,
-                      &instant.answers[candidate]};
+  const auto tile = [&](const char* title, std::size_t camera, std::size_t candidate) {
+    return answer_tile(title, images, camera, instant, candidate);
   };
   report::Plot plot{"smallest distance of the nine points", "time (s)", "m", false, false, {}};
   plot.series.push_back(smallest_truth(instants, DistanceMethod::kRho));
-  plot.series.push_back(smallest_answers(instants, kLetterOne, "letter, 1 camera *"));
-  plot.series.push_back(smallest_answers(instants, kLetterTwo, "letter, 2 cameras *"));
-  plot.series.push_back(smallest_answers(instants, kSearchTwo, "search, 2 cameras *"));
-  plot.series.push_back(smallest_answers(instants, kSearchTwoUnknown, "search, 2 cameras"));
-  plot.series.push_back(smallest_answers(instants, kSearchThree, "search, 3 cameras"));
+  plot.series.push_back(smallest_answers(instants, kShadowLetterOne, "letter, 1 camera *"));
+  plot.series.push_back(smallest_answers(instants, kShadowLetterTwo, "letter, 2 cameras *"));
+  plot.series.push_back(smallest_answers(instants, kShadowSearchTwo, "search, 2 cameras *"));
+  plot.series.push_back(smallest_answers(instants, kShadowSearchTwoUnknown, "search, 2 cameras"));
+  plot.series.push_back(smallest_answers(instants, kShadowSearchThree, "search, 3 cameras"));
   report.picture("shadow.png",
-                 draw_comparison({tile("camera 1: letter, it alone *", kFirstCamera, kLetterOne),
-                                  tile("camera 1: letter, both *", kFirstCamera, kLetterTwo),
-                                  tile("camera 1: search, both *", kFirstCamera, kSearchTwo),
-                                  tile("camera 1: letter, both", kFirstCamera, kLetterTwoUnknown),
-                                  tile("camera 2: search, both", kOppositeCamera, kSearchTwoUnknown),
-                                  tile("camera aside: search, all three", kAsideCamera, kSearchThree)},
+                 draw_comparison({tile("camera 1: letter, it alone *", kFirstCamera, kShadowLetterOne),
+                                  tile("camera 1: letter, both *", kFirstCamera, kShadowLetterTwo),
+                                  tile("camera 1: search, both *", kFirstCamera, kShadowSearchTwo),
+                                  tile("camera 1: letter, both", kFirstCamera, kShadowLetterTwoUnknown),
+                                  tile("camera 2: search, both", kOppositeCamera, kShadowSearchTwoUnknown),
+                                  tile("camera aside: search, all three", kAsideCamera, kShadowSearchThree)},
                                  {plot}),
                  "Above: the instant with the largest false shadow. Points on the arm and lines to what each method "
                  "takes for the nearest obstacle; a ring: nothing within 0.4 m. *: robot = background. Below: the "
@@ -123,73 +116,45 @@ void draw(const std::vector<Instant>& instants, StagedCell& stage, MethodCompari
 
 }  // namespace
 
-ShadowFigures measure_shadow(const Options& options, ExperimentReport* pictures) {
+GroupedDeviations measure_shadow(const Options& options, ExperimentReport* pictures) {
   const simulation::Arrangement arrangement = two_views("ideal");
   const Rig rig = with_width(arrangement.rig, width_or(options, 640, 320));
   StagedCell stage(Motion::arm_between, stage_around_the_wrist(), options.seed);
   MethodComparison comparison(stage, rig, arrangement, shadow_candidates(), {});
-  ShadowFigures figures;
-  figures.person_to_arm_m = std::numeric_limits<double>::infinity();
-  for (const Candidate& candidate : shadow_candidates()) {
-    figures.in_shadow.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
-    figures.otherwise.push_back({candidate.label, Deviation(DistanceMethod::kRho)});
-  }
-  const int frames = frames_or(options, 100, 40);
   const Window window = shadow_window(stage, rig.cameras.front().T_world_camera.translation());
-  std::vector<Instant> instants;
-  for (int frame = 0; frame < frames; ++frame) {
-    const double time_s = window.begin_s + (window.end_s - window.begin_s) * (frame + 0.5) / frames;
-    stage.move_to(time_s);
-    instants.push_back(comparison.at(stage, time_s, static_cast<std::uint64_t>(frame)));
-    const Instant& instant = instants.back();
-    figures.person_to_arm_m = std::min(figures.person_to_arm_m, instant.person_to_arm_m);
-    auto& rows = instant.points_behind_person > 0 ? figures.in_shadow : figures.otherwise;
-    for (std::size_t c = 0; c < shadow_candidates().size(); ++c) {
-      for (std::size_t i = 0; i < instant.truth.size(); ++i) {
-        rows[c].deviation.add(instant.answers[c][i], instant.truth[i].distance_m);
-      }
-    }
-    options.progress(static_cast<std::size_t>(frame) + 1, static_cast<std::size_t>(frames));
-  }
+  GroupedInstants measured = measure_groups(
+      stage, comparison, {window.begin_s, window.end_s, frames_or(options, 100, 40)}, &StagedCell::move_to,
+      [](const Instant& instant) { return instant.points_behind_person > 0; }, options.progress);
   if (pictures != nullptr) {
-    draw(instants, stage, comparison, *pictures);
+    draw_shadow(measured.instants, stage, comparison, *pictures);
   }
-  return figures;
+  return std::move(measured.figures);
 }
 
 void run_shadow(const Options& options, ExperimentReport& report) {
   report.paragraph(
       "A person stands aside and holds an arm into the line of sight from camera 1 to the robot, as in Figs. 8 and 12 "
-      "of "
-      "the letter. The second camera stands 4 m from the first, either aside (123 degrees around the robot) or "
-      "opposite; the letter states the 4 m only. Sensors are ideal, the arm moves. Distances "
-      "from nine points on its axis up to 0.4 m, beside the real ones.");
-  const ShadowFigures figures = measure_shadow(options, &report);
+      "of the letter. The second camera stands 4 m from the first, either aside (123 degrees around the robot) or "
+      "opposite; the letter states the 4 m only. Sensors are ideal, the arm moves. Distances from nine points on its "
+      "axis up to 0.4 m, beside the real ones.");
+  const GroupedDeviations figures = measure_shadow(options, &report);
   const auto false_share = [&](std::size_t candidate) {
-    return percent(figures.in_shadow[candidate].deviation.false_obstacles());
+    return percent(figures.chosen[candidate].deviation.false_obstacles());
   };
   report.headline("The person is never nearer to the arm than " + fixed(figures.person_to_arm_m, 2) +
                   " m. While a part of the arm is hidden from camera 1, the letter's method has a false obstacle (an "
                   "answer more than 100 mm too near) at " +
-                  false_share(kLetterOne) + " of the points with this camera alone and at " + false_share(kLetterTwo) +
-                  " with two, where the robot's pixels count as background.");
+                  false_share(kShadowLetterOne) + " of the points with this camera alone and at " +
+                  false_share(kShadowLetterTwo) + " with two, where the robot's pixels count as background.");
   report.headline("Where the space behind the robot counts as unknown, the search still has one at " +
-                  false_share(kSearchTwoUnknown) + " with two opposite cameras and at " + false_share(kSearchThree) +
-                  " with three.");
-  report.paragraph("While the person hides a control point from camera 1:");
-  report.paragraph(deviation_table(figures.in_shadow));
-  report.paragraph("At all other instants:");
-  report.paragraph(deviation_table(figures.otherwise));
+                  false_share(kShadowSearchTwoUnknown) + " with two opposite cameras and at " +
+                  false_share(kShadowSearchThree) + " with three.");
+  report_groups(figures, "While the person hides a control point from camera 1:", "in_shadow", report);
   report.paragraph(
       "*robot = background*: pixels of the robot are replaced by the empty room in all images, as if nothing could "
-      "stand "
-      "behind it; the letter's figures look like that. The other rows take the space behind the robot for unknown. "
-      "With "
-      "one camera that alone is an obstacle at nearly every point; with two, wherever the two shadows of the robot, or "
-      "one of them and the person's, overlap.");
-  report.figures()["person_to_arm_smallest_m"] = figures.person_to_arm_m;
-  report.figures()["in_shadow"] = deviation_figures(figures.in_shadow);
-  report.figures()["otherwise"] = deviation_figures(figures.otherwise);
+      "stand behind it; the letter's figures look like that. The other rows take the space behind the robot for "
+      "unknown. With one camera that alone is an obstacle at nearly every point; with two, wherever the two shadows of "
+      "the robot, or one of them and the person's, overlap.");
 }
 
 }  // namespace depthgrid::experiments

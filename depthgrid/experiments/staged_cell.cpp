@@ -7,6 +7,12 @@ namespace depthgrid::experiments {
 
 using simulation::BodyKind;
 
+simulation::PersonStage stage_around_the_wrist() {
+  simulation::PersonStage stage;
+  stage.robot_world = {0, -0.15, 0.65};
+  return stage;
+}
+
 StagedCell::StagedCell(simulation::Motion motion, const simulation::PersonStage& stage, std::uint64_t seed)
     : person_(motion, stage, seed), cell_(simulation::empty_workcell()) {
   const simulation::PersonState state = person_.at(0);

@@ -10,6 +10,9 @@
 
 namespace depthgrid::experiments {
 
+/// Where the person's scripts play beside the arm at work: around its wrist.
+[[nodiscard]] simulation::PersonStage stage_around_the_wrist();
+
 /// A function of time, motion and seed alone. One thread.
 class StagedCell {
  public:

@@ -6,7 +6,8 @@
 
 #include "depthgrid/experiments/experiment_report.hpp"
 #include "depthgrid/experiments/late_cycles.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
+#include "depthgrid/experiments/number_text.hpp"
+#include "depthgrid/report/markdown_table.hpp"
 #include "depthgrid/report/plot.hpp"
 
 namespace depthgrid::experiments {
@@ -181,7 +182,8 @@ void report_free(const LoopRecording& recording, const AvoidanceSettings& settin
   const int snapshots = quick ? 10 : 40;
   const int cycles = quick ? 64 : 128;
   ordered_json& figures = report.figures();
-  std::vector<std::vector<std::string>> rows;
+  report::MarkdownTable table({"loop, no frames arriving, no budget", "cycles a second, processor time",
+                               "by the wall clock", "median, ms", "99.9 %, ms", "most, ms", "of that, distances"});
   AvoidanceSettings bare = settings;  // what the letter asks: rho for the age of the image is not added
   bare.v_max_m_s = 0;
   AvoidanceSettings coarse = bare;
@@ -189,7 +191,7 @@ void report_free(const LoopRecording& recording, const AvoidanceSettings& settin
   const auto add = [&](const char* key, const std::string& name, Method method, LoopParts parts,
                        const AvoidanceSettings& with, int count) {
     figures["free"][key] = free_figures(run_free(recording, method, parts, with, snapshots, count, {}));
-    rows.push_back(free_row(name, figures["free"][key]));
+    table.row(free_row(name, figures["free"][key]));
   };
   const LoopParts nine = LoopParts::nine_points;
   add("search_nine_points", "search, nine points", Method::search, nine, settings, cycles);
@@ -206,9 +208,7 @@ void report_free(const LoopRecording& recording, const AvoidanceSettings& settin
                   std::to_string(snapshots) + " instants), " + fixed(rate / letter_rate, 1) +
                   " times the same loop on the letter's evaluation, and " + fixed(rate * kLetter_s, 1) +
                   " times the 300 a second that the letter states for its machine.");
-  report.paragraph(markdown_table({"loop, no frames arriving, no budget", "cycles a second, processor time",
-                                   "by the wall clock", "median, ms", "99.9 %, ms", "most, ms", "of that, distances"},
-                                  rows));
+  report.paragraph(table.text());
   figures["free"]["search_beside_letter"] = rate / letter_rate;
 }
 

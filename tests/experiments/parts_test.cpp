@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -25,12 +28,6 @@ Proximity answer(double distance_m, double known_to_m = Proximity::kNaN) {
   proximity.known_to_m = known_to_m;
   proximity.state = ProximityState::measured;
   return proximity;
-}
-
-simulation::PersonStage stage_beside_the_arm() {
-  simulation::PersonStage stage;
-  stage.robot_world = {0, -0.15, 0.65};
-  return stage;
 }
 
 TEST(Registry, NamesAreDistinctAndUnknownOnesListTheRest) {
@@ -79,7 +76,7 @@ TEST(Deviation, DoesNotCompareWhereTheSpaceEndsBeforeTheTruth) {
 }
 
 TEST(PointTruth, IsTheDistanceOfTheAnalyticScene) {
-  StagedCell stage(simulation::Motion::reach, stage_beside_the_arm(), 3);
+  StagedCell stage(simulation::Motion::reach, stage_around_the_wrist(), 3);
   PointTruth truth(stage.cell(), kControlPoints);
   bool person_nearest = false;
   for (int i = 0; i < 20; ++i) {
@@ -108,7 +105,7 @@ TEST(ArmAtWork, ControlPointsLieOnTheAxisInsideTheCapsules) {
 
 TEST(CameraImages, RobotIsInTheIntervalOrReplacedByTheRoom) {
   const Rig rig = with_width(two_views("ideal").rig, 96);
-  StagedCell stage(simulation::Motion::reach, stage_beside_the_arm(), 1);
+  StagedCell stage(simulation::Motion::reach, stage_around_the_wrist(), 1);
   CameraImages unknown(rig, stage, RobotPixels::behind_unknown, {});
   CameraImages background(rig, stage, RobotPixels::background, {});
   unknown.take(stage, 0);
@@ -143,6 +140,20 @@ TEST(TwoViews, BothSecondCamerasStandFourMetresFromTheFirst) {
             .norm(),
         4.0, 0.05);
   }
+}
+
+TEST(TwoViews, SecondCamerasStandOppositeAndAThirdAroundTheRobot) {
+  const Rig rig = two_views("ideal").rig;
+  const auto around_deg = [&](std::size_t second) {
+    const Eigen::Vector2d a = rig.cameras[kFirstCamera].T_world_camera.translation().head<2>().normalized();
+    const Eigen::Vector2d b = rig.cameras[second].T_world_camera.translation().head<2>().normalized();
+    return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180 / std::numbers::pi;
+  };
+  EXPECT_NEAR(around_deg(kOppositeCamera), 180, 1e-3);
+  EXPECT_NEAR(around_deg(kAsideCamera), 123, 0.5);
+  // The opposite ones face each other.
+  const auto axis = [&](std::size_t k) -> Eigen::Vector3d { return rig.cameras[k].T_world_camera.linear().col(2); };
+  EXPECT_NEAR(axis(kFirstCamera).dot(axis(kOppositeCamera)), -1, 1e-9);
 }
 
 TEST(LinearFit, FindsALineFromTwoCamerasOn) {

@@ -4,7 +4,7 @@
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
-#include "depthgrid/experiments/markdown_table.hpp"
+#include "depthgrid/experiments/number_text.hpp"
 #include "input/temporary_folder.hpp"
 #include "support/thrown_message.hpp"
 
@@ -69,9 +69,7 @@ TEST(ExperimentReport, WrongFoldersAreRefusedBeforeTheRun) {
   EXPECT_THAT(message(""), HasSubstr("--out"));
 }
 
-TEST(MarkdownTable, RefusesRowsOfAnotherLength) {
-  EXPECT_EQ(markdown_table({"a", "b"}, {{"1", "2"}}), "| a | b |\n| --- | --- |\n| 1 | 2 |");
-  EXPECT_THAT(test::thrown_message([] { (void)markdown_table({"a", "b"}, {{"1"}}); }), HasSubstr("1 cells"));
+TEST(NumberText, SharesInPercentAndNothingForNaN) {
   EXPECT_EQ(percent(0.1234), "12.3 %");
   EXPECT_EQ(fixed(std::numeric_limits<double>::quiet_NaN(), 1), "-");
 }

@@ -42,25 +42,25 @@ void expect_never_too_far(const std::vector<LabelledDeviation>& rows) {
 }
 
 TEST(Shadow, OneCameraReportsFalseObstaclesAndTwoDoNot) {
-  const ShadowFigures figures = measure_shadow(small(14), nullptr);
+  const GroupedDeviations figures = measure_shadow(small(14), nullptr);
   EXPECT_GT(figures.person_to_arm_m, DistanceMethod::kRho) << "the person came near: the shadow is not false";
   for (const std::string method : {"letter", "corrected", "search"}) {
-    const Deviation& one = row(figures.in_shadow, method + ", 1 camera, robot = background");
-    const Deviation& two = row(figures.in_shadow, method + ", 2 cameras, robot = background");
+    const Deviation& one = row(figures.chosen, method + ", 1 camera, robot = background");
+    const Deviation& two = row(figures.chosen, method + ", 2 cameras, robot = background");
     EXPECT_GE(one.compared(), 20U);
     EXPECT_GT(one.false_obstacles(), 0.5) << method;
     EXPECT_LT(two.false_obstacles(), 0.05) << method;
   }
-  expect_never_too_far(figures.in_shadow);
+  expect_never_too_far(figures.chosen);
   expect_never_too_far(figures.otherwise);
 }
 
 TEST(Shadow, SearchIsNeverTooFarInFullSizeImagesEither) {
   Options options = small(4);
   options.width_px = 640;
-  const ShadowFigures figures = measure_shadow(options, nullptr);
-  EXPECT_GT(figures.in_shadow.back().deviation.compared(), 0U);
-  expect_never_too_far(figures.in_shadow);
+  const GroupedDeviations figures = measure_shadow(options, nullptr);
+  EXPECT_GT(figures.chosen.back().deviation.compared(), 0U);
+  expect_never_too_far(figures.chosen);
   expect_never_too_far(figures.otherwise);
 }
 
@@ -68,24 +68,24 @@ TEST(Shadow, SameSeedSameFigures) {
   const auto figures = [](std::uint64_t seed) {
     Options options = small(3);
     options.seed = seed;
-    const ShadowFigures found = measure_shadow(options, nullptr);
-    return deviation_figures(found.in_shadow).dump() + deviation_figures(found.otherwise).dump();
+    const GroupedDeviations found = measure_shadow(options, nullptr);
+    return deviation_figures(found.chosen).dump() + deviation_figures(found.otherwise).dump();
   };
   EXPECT_EQ(figures(2), figures(2));
   EXPECT_NE(figures(2), figures(3));
 }
 
 TEST(HiddenHand, OneCameraMissesItAndASecondFindsIt) {
-  const HiddenHandFigures figures = measure_hidden_hand(small(24), nullptr);
+  const GroupedDeviations figures = measure_hidden_hand(small(24), nullptr);
   EXPECT_LT(figures.person_to_arm_m, 0.12);
-  const Deviation& blind = row(figures.hand_near, "letter, 1 camera, robot = background");
+  const Deviation& blind = row(figures.chosen, "letter, 1 camera, robot = background");
   EXPECT_GE(blind.compared(), 9U);
   EXPECT_GT(blind.overestimates(), 0.5);
   EXPECT_GT(blind.largest_overestimate_m(), 0.05);
-  EXPECT_LT(row(figures.hand_near, "letter, 2 cameras").overestimates(), 0.5 * blind.overestimates());
+  EXPECT_LT(row(figures.chosen, "letter, 2 cameras").overestimates(), 0.5 * blind.overestimates());
   // No number of cameras helps where one of them claims to have seen through the robot.
-  EXPECT_GT(row(figures.hand_near, "search, 2 cameras, robot = background").largest_overestimate_m(), 0.05);
-  expect_never_too_far(figures.hand_near);
+  EXPECT_GT(row(figures.chosen, "search, 2 cameras, robot = background").largest_overestimate_m(), 0.05);
+  expect_never_too_far(figures.chosen);
   expect_never_too_far(figures.otherwise);
   // The price of one camera: the robot's own shadow counts when nobody is near, too.
   EXPECT_GT(row(figures.otherwise, "search, 1 camera").false_obstacles(), 0.9);

@@ -1,4 +1,4 @@
-#include "markdown.hpp"
+#include "number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,17 +6,6 @@
 #include <sstream>
 
 namespace depthgrid::bench {
-namespace {
-
-std::string line(const std::vector<std::string>& cells) {
-  std::string text = "|";
-  for (const std::string& cell : cells) {
-    text += " " + cell + " |";
-  }
-  return text + "\n";
-}
-
-}  // namespace
 
 std::string digits3(double value) {
   if (!std::isfinite(value)) {
@@ -50,14 +39,5 @@ std::string millimetres(double value_m) {
   const double value = std::round(1e4 * value_m) / 10;
   return std::isnan(value) ? "-" : value >= 10 ? whole(value) : digits3(value).substr(0, 3);
 }
-
-MarkdownTable::MarkdownTable(const std::vector<std::string>& head) : text_(line(head)) {
-  for (std::size_t i = 0; i < head.size(); ++i) {
-    text_ += "|---";
-  }
-  text_ += "|\n";
-}
-
-void MarkdownTable::row(const std::vector<std::string>& cells) { text_ += line(cells); }
 
 }  // namespace depthgrid::bench

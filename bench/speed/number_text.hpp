@@ -1,8 +1,7 @@
-// Numbers and tables for Markdown.
+// Numbers for Markdown.
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace depthgrid::bench {
 
@@ -16,16 +15,5 @@ namespace depthgrid::bench {
 [[nodiscard]] std::string microseconds(double value_s);
 /// To a tenth below 10 mm, else whole.
 [[nodiscard]] std::string millimetres(double value_m);
-
-/// Lines of "| a | b |" under a head.
-class MarkdownTable {
- public:
-  explicit MarkdownTable(const std::vector<std::string>& head);
-  void row(const std::vector<std::string>& cells);
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
 
 }  // namespace depthgrid::bench
