@@ -133,27 +133,27 @@ report::Canvas picture_over_time(const Comparison& comparison) {
 }
 
 ordered_json figures_of(const RunResult& run) {
-  ordered_json entry{
-      {"smallest_distance_m", run.smallest_person_m},
-      {"contacts", run.contacts.size()},
-      {"in_contact_s", run.in_contact_s},
-      {"vertices", run.vertices},
-      {"s_per_vertex", run.vertices > 0 ? ordered_json(run.duration_s / run.task_share) : ordered_json(nullptr)},
-      {"stopped_s", run.stopped_s},
-      {"stopped_with_nothing_within_rho_s", run.false_stop_s},
-      {"object_contacts", run.object_contacts},
-      {"over_estimates", run.over_estimates},
-      {"periods_compared", run.compared}};
-  for (const Contact& contact : run.contacts) {
+  ordered_json entry{{"smallest_distance_m", run.summary.smallest_person_m},
+                     {"contacts", run.summary.contacts.size()},
+                     {"in_contact_s", run.summary.in_contact_s},
+                     {"vertices", run.vertices},
+                     {"s_per_vertex",
+                      run.vertices > 0 ? ordered_json(run.duration_s / run.summary.task_share) : ordered_json(nullptr)},
+                     {"stopped_s", run.summary.stopped_s},
+                     {"stopped_with_nothing_within_rho_s", run.summary.false_stop_s},
+                     {"object_contacts", run.summary.object_contacts},
+                     {"over_estimates", run.summary.over_estimates},
+                     {"periods_compared", run.summary.compared}};
+  for (const Contact& contact : run.summary.contacts) {
     entry["contact_causes"].push_back(to_string(contact.cause));
   }
   return entry;
 }
 
 std::string causes(const RunResult& run) {
-  std::string text = std::to_string(run.contacts.size());
-  for (const Contact& contact : run.contacts) {
-    text += (&contact == &run.contacts.front() ? ": " : ", ") + std::string(to_string(contact.cause));
+  std::string text = std::to_string(run.summary.contacts.size());
+  for (const Contact& contact : run.summary.contacts) {
+    text += (&contact == &run.summary.contacts.front() ? ": " : ", ") + std::string(to_string(contact.cause));
   }
   return text;
 }
@@ -164,9 +164,10 @@ void report_comparison(const Comparison& comparison, const std::vector<Eigen::Ve
                                "vertices reached", "s per vertex", "stopped, s",
                                "stopped with nothing within 0.4 m, s"});
   for (const auto& [method, run] : comparison.runs) {
-    table.row({std::string(title(method)), fixed(run.smallest_person_m, 3), causes(run), fixed(run.in_contact_s, 2),
-               std::to_string(run.vertices), run.vertices > 0 ? fixed(run.duration_s / run.task_share, 3) : "-",
-               fixed(run.stopped_s, 2), fixed(run.false_stop_s, 2)});
+    table.row({std::string(title(method)), fixed(run.summary.smallest_person_m, 3), causes(run),
+               fixed(run.summary.in_contact_s, 2), std::to_string(run.vertices),
+               run.vertices > 0 ? fixed(run.duration_s / run.summary.task_share, 3) : "-",
+               fixed(run.summary.stopped_s, 2), fixed(run.summary.false_stop_s, 2)});
     report.figures()[comparison.sensor][std::string(key(method))] = figures_of(run);
   }
   report.paragraph("## " + comparison.sensor + " sensor");
@@ -183,7 +184,7 @@ void report_comparison(const Comparison& comparison, const std::vector<Eigen::Ve
 
 void run_avoidance_experiment(const Options& options, ExperimentReport& report) {
   const robot::RobotModel model = robot::kuka_lwr4();
-  const double duration_s = frames_or(options, 360, 240) / kFrameRate;
+  const double duration_s = frames_or(options, 360, 240) / kFrameRate_hz;
   const int width_px = width_or(options, 320, 160);
   std::vector<Comparison> comparisons(2);
   comparisons[0].sensor = "ideal";
@@ -216,11 +217,11 @@ void run_avoidance_experiment(const Options& options, ExperimentReport& report) 
     const RunResult& letter = comparison.runs[Method::letter_two];
     const RunResult& search = comparison.runs[Method::search];
     report.headline(comparison.sensor + " sensor: smallest true distance to the person " +
-                    fixed(comparison.runs[Method::none].smallest_person_m, 3) + " m without avoidance, " +
-                    fixed(comparison.runs[Method::letter_one].smallest_person_m, 3) + " m (letter, 1 camera), " +
-                    fixed(letter.smallest_person_m, 3) + " m (letter, 2 cameras), " +
-                    fixed(search.smallest_person_m, 3) + " m (search); vertices reached " +
-                    std::to_string(comparison.runs[Method::none].vertices) + ", " +
+                    fixed(comparison.runs[Method::none].summary.smallest_person_m, 3) + " m without avoidance, " +
+                    fixed(comparison.runs[Method::letter_one].summary.smallest_person_m, 3) +
+                    " m (letter, 1 camera), " + fixed(letter.summary.smallest_person_m, 3) +
+                    " m (letter, 2 cameras), " + fixed(search.summary.smallest_person_m, 3) +
+                    " m (search); vertices reached " + std::to_string(comparison.runs[Method::none].vertices) + ", " +
                     std::to_string(comparison.runs[Method::letter_one].vertices) + ", " +
                     std::to_string(letter.vertices) + ", " + std::to_string(search.vertices) + ".");
   }

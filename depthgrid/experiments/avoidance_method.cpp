@@ -7,12 +7,6 @@
 
 namespace depthgrid::experiments {
 
-namespace {
-
-constexpr double kFramePeriod = 1.0 / 30;
-
-}  // namespace
-
 std::string_view title(Method method) noexcept {
   constexpr std::array<std::string_view, 5> kTitles{"no avoidance", "letter, 1 camera", "letter, 2 cameras",
                                                     "search, 2 cameras", "search, pockets ignored"};
@@ -67,7 +61,8 @@ search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settin
   result.v_max_m_s = settings.v_max_m_s;
   result.resolution_m = settings.resolution_m;
   // An image is at most this old when it is asked: what is beyond rho then still is.
-  result.rho_m = settings.rho_m + settings.v_max_m_s * (settings.frame_latency_s + kFramePeriod + settings.period_s);
+  result.rho_m =
+      settings.rho_m + settings.v_max_m_s * (settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s);
   return result;
 }
 

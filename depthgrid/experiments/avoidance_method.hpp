@@ -10,6 +10,7 @@
 #include "depthgrid/avoidance/avoidance_loop.hpp"
 #include "depthgrid/avoidance/search_distances.hpp"
 #include "depthgrid/core/rig.hpp"
+#include "depthgrid/experiments/avoidance_motion.hpp"
 #include "depthgrid/robot/robot_at_exposure.hpp"
 
 namespace depthgrid::experiments {
@@ -32,6 +33,8 @@ inline constexpr std::array kMethods{Method::none, Method::letter_one, Method::l
 [[nodiscard]] std::string_view key(Method method) noexcept;
 /// 0 for `none`.
 [[nodiscard]] int cameras_of(Method method) noexcept;
+
+inline constexpr double kFrameRate_hz = 30;  ///< of every camera
 
 /// What all runs of one comparison share.
 struct AvoidanceSettings {
@@ -67,6 +70,7 @@ struct AvoidanceSettings {
                                                                      std::size_t parts);
 
 [[nodiscard]] avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
-                                                    const AvoidanceSettings& settings, double hexagon_radius_m = 0.2);
+                                                    const AvoidanceSettings& settings,
+                                                    double hexagon_radius_m = kHexagonRadius_m);
 
 }  // namespace depthgrid::experiments

@@ -14,6 +14,8 @@
 
 namespace depthgrid::experiments {
 
+inline constexpr double kHexagonRadius_m = 0.2;  ///< of the task, where a motion does not say otherwise
+
 /// Solids in the world frame; always as many of each.
 struct MovingSolids {
   std::vector<simulation::Capsule> capsules;
@@ -25,9 +27,9 @@ struct AvoidanceMotion {
   std::string name;                        ///< with the seed, where there is one
   std::function<MovingSolids(double)> at;  ///< seconds; empty: nothing moves
   double duration_s = 0;
-  double v_max_m_s = 0;                   ///< no point of it moves faster
-  std::vector<simulation::Box> plates{};  ///< stand there for this motion only
-  double hexagon_radius_m = 0.2;          ///< of the task
+  double v_max_m_s = 0;                        ///< no point of it moves faster
+  std::vector<simulation::Box> plates{};       ///< stand there for this motion only
+  double hexagon_radius_m = kHexagonRadius_m;  ///< of the task
 };
 
 /// Where the person's scripts play in the avoidance cell.

@@ -94,7 +94,7 @@ class Work {
     settings.duration_s = plan_.duration_s;
     settings.seed = plan_.seed + static_cast<std::uint64_t>(number);
     for (const Method method : kMethods) {
-      outcome.runs[method] = summary_of(run_avoidance(method, model_, motion, settings));
+      outcome.runs[method] = run_avoidance(method, model_, motion, settings).summary;
     }
     return outcome;
   }

@@ -83,7 +83,7 @@ std::map<Method, double> alone_s_per_vertex(const CampaignPlan& plan) {
   std::map<Method, double> result;
   for (const Method method : kMethods) {
     const RunResult run = run_avoidance(method, model, nobody(plan.duration_s), settings);
-    result[method] = run.duration_s / run.task_share;
+    result[method] = run.duration_s / run.summary.task_share;
   }
   return result;
 }
@@ -91,11 +91,13 @@ std::map<Method, double> alone_s_per_vertex(const CampaignPlan& plan) {
 void say_what_was_done(const CampaignPlan& plan, const CampaignState& state, ExperimentReport& report) {
   report.paragraph(
       std::to_string(state.motions.size()) + " motions of " + fixed(plan.duration_s) +
-      " s around the time when the person is nearest, with every method: the arm goes round a hexagon (radius 0.2 m, "
-      "0.40 m/s) that stands in the plane between the letter's two cameras. Images: " +
+      " s around the time when the person is nearest, with every method: the arm goes round a hexagon (radius " +
+      fixed(kHexagonRadius_m, 1) +
+      " m, 0.40 m/s) that stands in the plane between the letter's two cameras. Images: " +
       std::to_string(plan.common.width_px) + " x " + std::to_string(3 * plan.common.width_px / 4) + ", " +
-      std::string(plan.common.sensor) + " sensor, 30 Hz, " + fixed(1000 * plan.common.frame_latency_s) +
-      " ms late; commands every 2 ms, distances every " + fixed(2.0 * plan.common.evaluate_every) +
+      std::string(plan.common.sensor) + " sensor, " + fixed(kFrameRate_hz) + " Hz, " +
+      fixed(1000 * plan.common.frame_latency_s) + " ms late; commands every " + fixed(1000 * plan.common.period_s) +
+      " ms, distances every " + fixed(1000 * plan.common.period_s * plan.common.evaluate_every) +
       " ms. The person does not avoid the robot, and walks into it where its script leads. Truth: exact distances "
       "between bodies, every 2 ms. The letter asks nine points, repels the end effector by the mean (11) as printed "
       "and limits the body by the risk; the search asks the links' capsules, repels by the corrected direction and "
@@ -179,9 +181,9 @@ void report_time(const CampaignState& state, Method method, ExperimentReport& re
                   fixed(kSlowest, 1) + "): " + text + ".");
 }
 
-void report_contacts_caused(const CampaignPlan& plan, const CampaignState& state, Method method,
-                            const MethodTotals& sum, ExperimentReport& report) {
-  const auto caused = contacts_caused(state, method, plan.common.v_max_m_s);
+void report_contacts_caused(const CampaignState& state, Method method, const MethodTotals& sum,
+                            ExperimentReport& report) {
+  const auto caused = contacts_caused(state, method);
   report.figures()["claims"][std::string(key(method))]["contacts_caused_by_the_robot"] = caused.size();
   const auto begun = sum.causes.find(ContactCause::touched_from_the_start);
   report.headline(std::string(title(method)) + ": " + std::to_string(caused.size()) +
@@ -231,7 +233,7 @@ void report_campaign(const CampaignPlan& plan, const CampaignState& state, Exper
   report.headline("Task time with nobody there, slowest method beside no avoidance: " + fixed(slowest_alone, 3) +
                   " (wanted: at most " + fixed(kSameTime, 2) + ").");
   for (const Method method : {Method::search, Method::search_pockets}) {
-    report_contacts_caused(plan, state, method, sums.at(method), report);
+    report_contacts_caused(state, method, sums.at(method), report);
     report_time(state, method, report);
   }
   report.picture("smallest-distances.png", picture_of_distances(state),

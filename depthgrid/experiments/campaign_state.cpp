@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
@@ -31,15 +32,22 @@ ContactCause cause(const std::string& name) {
   fail("'", name, "' is no cause of a contact");
 }
 
+ordered_json to_json(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+std::optional<double> optional_number(const ordered_json& value) {
+  return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
 ordered_json to_json(const Contact& contact) {
   return {{"time_s", contact.time_s},
           {"link", contact.link},
           {"robot_m_s", contact.robot_m_s},
           {"person_m_s", contact.person_m_s},
-          {"told_m", contact.told_m ? ordered_json(*contact.told_m) : ordered_json(nullptr)},
+          {"told_m", to_json(contact.told_m)},
           {"really_m", contact.really_m},
-          {"fastest_during_m_s",
-           contact.fastest_during_m_s ? ordered_json(*contact.fastest_during_m_s) : ordered_json(nullptr)},
+          {"fastest_during_m_s", to_json(contact.fastest_during_m_s)},
           {"cause", to_string(contact.cause)}};
 }
 
@@ -49,27 +57,28 @@ Contact contact_of(const ordered_json& json) {
   contact.link = json.at("link");
   contact.robot_m_s = json.at("robot_m_s");
   contact.person_m_s = json.at("person_m_s");
-  if (!json.at("told_m").is_null()) {
-    contact.told_m = json.at("told_m").get<double>();
-  }
+  contact.told_m = optional_number(json.at("told_m"));
   contact.really_m = json.at("really_m");
-  if (!json.at("fastest_during_m_s").is_null()) {
-    contact.fastest_during_m_s = json.at("fastest_during_m_s").get<double>();
-  }
+  contact.fastest_during_m_s = optional_number(json.at("fastest_during_m_s"));
   contact.cause = cause(json.at("cause"));
   return contact;
 }
 
+/// What is a finite number in a summary, with its key: the same for writing and reading.
+template <class Summary, class Visit>
+void each_number(Summary& run, Visit visit) {
+  visit("in_contact_s", run.in_contact_s);
+  visit("stopped_s", run.stopped_s);
+  visit("false_stop_s", run.false_stop_s);
+  visit("over_estimates", run.over_estimates);
+  visit("largest_over_estimate_m", run.largest_over_estimate_m);
+  visit("compared", run.compared);
+  visit("object_contacts", run.object_contacts);
+}
+
 ordered_json to_json(const RunSummary& run) {
-  ordered_json json{{"task_share", run.task_share},
-                    {"smallest_person_m", finite(run.smallest_person_m)},
-                    {"in_contact_s", run.in_contact_s},
-                    {"stopped_s", run.stopped_s},
-                    {"false_stop_s", run.false_stop_s},
-                    {"over_estimates", run.over_estimates},
-                    {"largest_over_estimate_m", run.largest_over_estimate_m},
-                    {"compared", run.compared},
-                    {"object_contacts", run.object_contacts}};
+  ordered_json json{{"task_share", run.task_share}, {"smallest_person_m", finite(run.smallest_person_m)}};
+  each_number(run, [&](const char* key, const auto& value) { json[key] = value; });
   json["contacts"] = ordered_json::array();
   for (const Contact& contact : run.contacts) {
     json["contacts"].push_back(to_json(contact));
@@ -81,13 +90,7 @@ RunSummary summary_from(const ordered_json& json) {
   RunSummary run;
   run.task_share = json.at("task_share");
   run.smallest_person_m = number(json.at("smallest_person_m"));
-  run.in_contact_s = json.at("in_contact_s");
-  run.stopped_s = json.at("stopped_s");
-  run.false_stop_s = json.at("false_stop_s");
-  run.over_estimates = json.at("over_estimates");
-  run.largest_over_estimate_m = json.at("largest_over_estimate_m");
-  run.compared = json.at("compared");
-  run.object_contacts = json.at("object_contacts");
+  each_number(run, [&](const char* key, auto& value) { json.at(key).get_to(value); });
   for (const ordered_json& contact : json.at("contacts")) {
     run.contacts.push_back(contact_of(contact));
   }
@@ -95,19 +98,6 @@ RunSummary summary_from(const ordered_json& json) {
 }
 
 }  // namespace
-
-RunSummary summary_of(const RunResult& result) {
-  return {result.task_share,
-          result.smallest_person_m,
-          result.in_contact_s,
-          result.stopped_s,
-          result.false_stop_s,
-          result.over_estimates,
-          result.largest_over_estimate_m,
-          result.compared,
-          result.object_contacts,
-          result.contacts};
-}
 
 void write_campaign_state(const fs::path& file, const CampaignState& state) {
   ordered_json json;

@@ -7,25 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "depthgrid/experiments/avoidance_run.hpp"
+#include "depthgrid/experiments/avoidance_method.hpp"
+#include "depthgrid/experiments/run_summary.hpp"
 
 namespace depthgrid::experiments {
-
-/// A run's result without its samples.
-struct RunSummary {
-  double task_share = 0;
-  double smallest_person_m = 0;  ///< infinity with nobody
-  double in_contact_s = 0;
-  double stopped_s = 0;
-  double false_stop_s = 0;
-  std::int64_t over_estimates = 0;
-  double largest_over_estimate_m = 0;
-  std::int64_t compared = 0;
-  int object_contacts = 0;
-  std::vector<Contact> contacts;
-};
-
-[[nodiscard]] RunSummary summary_of(const RunResult& result);
 
 struct MotionOutcome {
   std::string name;

@@ -64,11 +64,11 @@ TimeBesideLetter time_beside_letter(const CampaignState& state, Method method, M
   return result;
 }
 
-std::vector<Contact> contacts_caused(const CampaignState& state, Method method, double v_max_m_s) {
+std::vector<Contact> contacts_caused(const CampaignState& state, Method method) {
   std::vector<Contact> caused;
   for (const auto& [number, outcome] : state.motions) {
     for (const Contact& contact : outcome.runs.at(method).contacts) {
-      if (contact.robot_m_s > kStanding_m_s && contact.person_m_s <= v_max_m_s) {
+      if (caused_by_the_robot(contact.cause)) {
         caused.push_back(contact);
       }
     }

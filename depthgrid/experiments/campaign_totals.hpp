@@ -43,8 +43,7 @@ inline constexpr double kSlowest = 1.5;
 enum class Motions : std::uint8_t { all, scripts, recordings };
 [[nodiscard]] TimeBesideLetter time_beside_letter(const CampaignState& state, Method method, Motions which);
 
-/// The contacts of a method in which the touched point came nearer at more than kStanding although the person was no
-/// faster than v_max.
-[[nodiscard]] std::vector<Contact> contacts_caused(const CampaignState& state, Method method, double v_max_m_s);
+/// The contacts of a method that were caused_by_the_robot().
+[[nodiscard]] std::vector<Contact> contacts_caused(const CampaignState& state, Method method);
 
 }  // namespace depthgrid::experiments

@@ -164,7 +164,7 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
   all.take(recording.joints(recording.period_of(0)), recording.views(0), -recording.period_s());
   const auto periods = static_cast<std::int64_t>(std::llround(duration_s / recording.period_s()));
   result.periods.resize(static_cast<std::size_t>(periods));
-  result.frame_s.reserve(recording.frames() + static_cast<std::size_t>(std::max(0.0, duration_s) * kFrameRate));
+  result.frame_s.reserve(recording.frames() + static_cast<std::size_t>(std::max(0.0, duration_s) * kFrameRate_hz));
   const Clock::time_point begin = Clock::now() + std::chrono::milliseconds(100);
   const auto time_of = [&](std::int64_t period) {
     return begin + ticks(static_cast<double>(period) * recording.period_s());

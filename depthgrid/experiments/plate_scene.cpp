@@ -25,8 +25,8 @@ PlateScene plate_scene(Method method, const AvoidanceSettings& settings) {
   run.sample_every = 10;
   const RunResult result = run_avoidance(method, model, motion, run);
   PlateScene scene;
-  scene.smallest_m = result.smallest_person_m;
-  scene.contacts = static_cast<int>(result.contacts.size());
+  scene.smallest_m = result.summary.smallest_person_m;
+  scene.contacts = static_cast<int>(result.summary.contacts.size());
   for (const RunSample& sample : result.samples) {
     const MovingSolids hand = motion.at(sample.time_s);
     Eigen::Vector3d way = on_axis(hand.capsules[0], sample.end_effector_world) - sample.end_effector_world;

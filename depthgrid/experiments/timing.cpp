@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "depthgrid/experiments/deviation.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
 #include "depthgrid/experiments/late_cycles.hpp"
 #include "depthgrid/experiments/number_text.hpp"
@@ -16,18 +17,8 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr double kPlayedRate = 30;
 constexpr double kLetter_s = 1.0 / 300;
 constexpr double kBudgetShare = 0.6;  // of the period, for the distances
-
-double at_share(std::vector<double> values, double share) {
-  if (values.empty()) {
-    return 0;
-  }
-  std::sort(values.begin(), values.end());
-  const auto last = static_cast<double>(values.size() - 1);
-  return values[static_cast<std::size_t>(std::lround(share * last))];
-}
 
 double sum(const std::vector<double>& values) {
   double total = 0;
@@ -65,9 +56,9 @@ ordered_json free_figures(const FreeRun& run) {
   return {{"cycles", run.cycle_s.size()},
           {"cycles_a_second", 1 / mean_s},
           {"cycles_a_second_by_the_wall", static_cast<double>(run.cycle_s.size()) / run.wall_s},
-          {"median_ms", 1e3 * at_share(run.cycle_s, 0.5)},
-          {"p999_ms", 1e3 * at_share(run.cycle_s, 0.999)},
-          {"most_ms", 1e3 * at_share(run.cycle_s, 1)},
+          {"median_ms", 1e3 * quantile(run.cycle_s, 0.5)},
+          {"p999_ms", 1e3 * quantile(run.cycle_s, 0.999)},
+          {"most_ms", 1e3 * quantile(run.cycle_s, 1)},
           {"distances_share", run.evaluate_s / run.wall_s}};
 }
 
@@ -138,9 +129,9 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
                   " cycles had their command within 2 ms of the period's beginning while frames arrived (wanted: 99.9 "
                   "%); " +
                   percent(own_share, 3) +
-                  " took no more than 2 ms of processor time. Longest: " + fixed(1e3 * at_share(figures.end_s, 1), 2) +
+                  " took no more than 2 ms of processor time. Longest: " + fixed(1e3 * quantile(figures.end_s, 1), 2) +
                   " ms after the beginning; largest processor time of any cycle: " +
-                  fixed(1e3 * at_share(figures.processor_s, 1), 2) + " ms. " + std::to_string(run.failed_cycles) +
+                  fixed(1e3 * quantile(figures.processor_s, 1), 2) + " ms. " + std::to_string(run.failed_cycles) +
                   " cycles and " + std::to_string(run.failed_frames) + " pairs of images failed.");
   report.paragraph(
       "Of the " + std::to_string(cycles - late.in_time) + " late ones " + std::to_string(late.after_overrun) +
@@ -149,17 +140,17 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
       " others did not have the processor all the time, " + std::to_string(late.computed) +
       " computed for 2 ms or longer. The worst cycle: " + worst_cycle(run) +
       ". Budget of the distances: " + fixed(1e3 * budget.time_s, 2) + " ms a cycle; it ended " + percent(stopped, 3) +
-      " of the answers. A pair of images took " + fixed(1e3 * at_share(run.frame_s, 0.5), 2) + " ms (median) and " +
-      fixed(1e3 * at_share(run.frame_s, 1), 2) + " ms (most) on the other thread, robot removal included. " +
+      " of the answers. A pair of images took " + fixed(1e3 * quantile(run.frame_s, 0.5), 2) + " ms (median) and " +
+      fixed(1e3 * quantile(run.frame_s, 1), 2) + " ms (most) on the other thread, robot removal included. " +
       (run.real_time_priority ? "The loop's thread had real-time priority."
                               : "The loop's thread had no real-time priority."));
   entry = {{"cycles", cycles},
            {"share_within_2_ms", share},
            {"share_within_2_ms_of_processor_time", own_share},
-           {"median_ms", 1e3 * at_share(figures.took_s, 0.5)},
-           {"p999_ms", 1e3 * at_share(figures.took_s, 0.999)},
-           {"most_ms_after_beginning", 1e3 * at_share(figures.end_s, 1)},
-           {"most_ms_of_processor_time", 1e3 * at_share(figures.processor_s, 1)},
+           {"median_ms", 1e3 * quantile(figures.took_s, 0.5)},
+           {"p999_ms", 1e3 * quantile(figures.took_s, 0.999)},
+           {"most_ms_after_beginning", 1e3 * quantile(figures.end_s, 1)},
+           {"most_ms_of_processor_time", 1e3 * quantile(figures.processor_s, 1)},
            {"late",
             {{"after_overrun", late.after_overrun},
              {"woken_late", late.woken_late},
@@ -170,8 +161,8 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
            {"worst_cycle", worst_cycle(run)},
            {"budget_ms", 1e3 * budget.time_s},
            {"answers_ended_by_budget", stopped},
-           {"frame_pair_median_ms", 1e3 * at_share(run.frame_s, 0.5)},
-           {"frame_pair_most_ms", 1e3 * at_share(run.frame_s, 1)},
+           {"frame_pair_median_ms", 1e3 * quantile(run.frame_s, 0.5)},
+           {"frame_pair_most_ms", 1e3 * quantile(run.frame_s, 1)},
            {"real_time_priority", run.real_time_priority}};
   draw_cycles(name, figures, report);
 }
@@ -218,7 +209,7 @@ void run_timing(const Options& options, ExperimentReport& report) {
   AvoidanceSettings settings;
   settings.width_px = width_or(options, 640, 640);
   settings.resolution_m = 0.005;
-  const double recorded_s = frames_or(options, 150, 45) / kPlayedRate;
+  const double recorded_s = frames_or(options, 150, 45) / kFrameRate_hz;
   const double paced_s = options.quick ? 10 : 60;
   const search::Budget budget{0, kBudgetShare * settings.period_s};
   const auto steps = static_cast<std::size_t>(2 * paced_s) + 3;
