@@ -71,6 +71,34 @@ struct Truth {
   std::vector<PointTruth::Nearest> centres;
 };
 
+/// What all instants of a stage are asked for.
+class Truths {
+ public:
+  explicit Truths(const StagedCell& stage)
+      : cell_(stage.cell()),
+        control_(stage.cell(), stage.arm().points_world().size()),
+        surface_(stage.cell(), surface_points(stage.arm(), 0).size()) {}
+
+  /// The stage as it stands now, the arm's surface grown by `padding_m`.
+  [[nodiscard]] Truth at(const StagedCell& stage, double padding_m) {
+    Truth truth;
+    cell_.update(stage.cell());
+    truth.person_to_arm_m = cell_.between(stage.arm_body(), stage.person_body())->distance_m;
+    truth.control = control_.distances(stage.cell(), stage.arm().points_world());
+    truth.surface = surface_points(stage.arm(), padding_m);
+    for (const SurfacePoint& point : truth.surface) {
+      truth.centres_world.push_back(point.centre_world);
+    }
+    truth.centres = surface_.distances(stage.cell(), truth.centres_world);
+    return truth;
+  }
+
+ private:
+  workcell::CellTruth cell_;
+  PointTruth control_;
+  PointTruth surface_;
+};
+
 void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth& truth, std::mt19937_64& engine) {
   CountedMethod& result = setup.result.methods[method];
   DistanceMethod& asked = setup.methods[method];
@@ -114,6 +142,19 @@ void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth&
   }
 }
 
+/// Takes the times of all calls out of the setups.
+std::vector<CameraCount> medians_of(std::vector<Setup>& setups) {
+  std::vector<CameraCount> counts;
+  for (Setup& setup : setups) {
+    for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
+      setup.result.methods[method].evaluation_s = quantile(std::move(setup.evaluations_s[method]), 0.5);
+      setup.result.methods[method].update_s = quantile(std::move(setup.updates_s[method]), 0.5);
+    }
+    counts.push_back(std::move(setup.result));
+  }
+  return counts;
+}
+
 }  // namespace
 
 LinearFit linear_fit(const std::vector<CameraCount>& counts, std::size_t method) {
@@ -150,21 +191,11 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
   for (int cameras = 1; cameras <= kMostCameras; ++cameras) {
     setups.emplace_back(cameras, width_px, stage);
   }
-  workcell::CellTruth cell_truth(stage.cell());
-  PointTruth control_truth(stage.cell(), stage.arm().points_world().size());
-  PointTruth surface_truth(stage.cell(), surface_points(stage.arm(), 0).size());
+  Truths truths(stage);
   std::mt19937_64 engine(options.seed);
   for (int frame = 0; frame < frames; ++frame) {
     stage.move_to(stage.person().duration_s() * (frame + 0.5) / frames);
-    Truth truth;
-    cell_truth.update(stage.cell());
-    truth.person_to_arm_m = cell_truth.between(stage.arm_body(), stage.person_body())->distance_m;
-    truth.control = control_truth.distances(stage.cell(), stage.arm().points_world());
-    truth.surface = surface_points(stage.arm(), setups.front().images.padding_m());
-    for (const SurfacePoint& point : truth.surface) {
-      truth.centres_world.push_back(point.centre_world);
-    }
-    truth.centres = surface_truth.distances(stage.cell(), truth.centres_world);
+    const Truth truth = truths.at(stage, setups.front().images.padding_m());
     for (Setup& setup : setups) {  // all of them in every frame: what slows the machine down slows them all
       setup.images.take(stage, static_cast<std::uint64_t>(frame));
       setup.result.gray.add(gray_area(stage, setup.images, setup.arrangement, kSpacing));
@@ -175,15 +206,7 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
                        static_cast<std::size_t>(frames) * kMostCameras);
     }
   }
-  std::vector<CameraCount> counts;
-  for (Setup& setup : setups) {
-    for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
-      setup.result.methods[method].evaluation_s = quantile(std::move(setup.evaluations_s[method]), 0.5);
-      setup.result.methods[method].update_s = quantile(std::move(setup.updates_s[method]), 0.5);
-    }
-    counts.push_back(std::move(setup.result));
-  }
-  return counts;
+  return medians_of(setups);
 }
 
 }  // namespace depthgrid::experiments

@@ -107,14 +107,7 @@ std::string left_table(const std::vector<CameraCount>& counts) {
   return table.text();
 }
 
-}  // namespace
-
-void run_camera_count(const Options& options, ExperimentReport& report) {
-  report.paragraph(
-      "One to eight cameras: the letter's first one; its two; from three on a circle around the robot. A person "
-      "reaches for the moving arm, sensors are ideal, the space behind the robot counts as unknown. The letter states "
-      "that its computations grow linearly with the number of cameras.");
-  const std::vector<CameraCount> counts = measure_camera_counts(options);
+void report_growth(const std::vector<CameraCount>& counts, ExperimentReport& report) {
   const std::size_t last = counts.size() - 1;
   std::string growth = "From two to eight cameras the time of an evaluation grows";
   for (const std::size_t method : {kCountedHybrid, kCountedCorrected, kCountedSearch}) {
@@ -129,10 +122,9 @@ void run_camera_count(const Options& options, ExperimentReport& report) {
       percent(counts[last].gray.share_near()) + " with eight; points of the robot that touch a pocket from " +
       pockets_text(counts[0].methods[kCountedSearch]) + " to " + pockets_text(counts[1].methods[kCountedSearch]) +
       " and " + pockets_text(counts[last].methods[kCountedSearch]) + ".");
-  report.picture("cameras.png", draw(counts),
-                 "Above: processor time, medians of one run. Below: space that no camera has seen free, points of the "
-                 "robot that read contact though nothing is within 0.1 m, control points whose answer is more than 100 "
-                 "mm too near.");
+}
+
+void report_tables(const std::vector<CameraCount>& counts, ExperimentReport& report) {
   report.paragraph("Processor time of an evaluation of nine control points, new points every time:");
   report.paragraph(time_table(counts));
   report.paragraph(
@@ -145,6 +137,9 @@ void run_camera_count(const Options& options, ExperimentReport& report) {
       "*pockets*: points of the robot's surface (grown by the padding of its removal) that read less than 10 mm though "
       "nothing is within 100 mm. Instants at which the person is inside that padding are left out of the comparison: "
       "no method can see them there.");
+}
+
+void report_figures(const std::vector<CameraCount>& counts, ExperimentReport& report) {
   for (const CameraCount& count : counts) {
     auto& json = report.figures()["cameras"][std::to_string(count.cameras)];
     json["gray_share"] = count.gray.share();
@@ -165,6 +160,23 @@ void run_camera_count(const Options& options, ExperimentReport& report) {
     report.figures()["linear_fit"][counts[0].methods[method].label] = {
         {"offset_s", fit.offset_s}, {"slope_s_per_camera", fit.slope_s}, {"r_squared", fit.r_squared}};
   }
+}
+
+}  // namespace
+
+void run_camera_count(const Options& options, ExperimentReport& report) {
+  report.paragraph(
+      "One to eight cameras: the letter's first one; its two; from three on a circle around the robot. A person "
+      "reaches for the moving arm, sensors are ideal, the space behind the robot counts as unknown. The letter states "
+      "that its computations grow linearly with the number of cameras.");
+  const std::vector<CameraCount> counts = measure_camera_counts(options);
+  report_growth(counts, report);
+  report.picture("cameras.png", draw(counts),
+                 "Above: processor time, medians of one run. Below: space that no camera has seen free, points of the "
+                 "robot that read contact though nothing is within 0.1 m, control points whose answer is more than 100 "
+                 "mm too near.");
+  report_tables(counts, report);
+  report_figures(counts, report);
 }
 
 }  // namespace depthgrid::experiments

@@ -92,8 +92,7 @@ void say_what_was_done(const CampaignPlan& plan, const CampaignState& state, Exp
   report.paragraph(
       std::to_string(state.motions.size()) + " motions of " + fixed(plan.duration_s) +
       " s around the time when the person is nearest, with every method: the arm goes round a hexagon (radius " +
-      fixed(kHexagonRadius_m, 1) +
-      " m, 0.40 m/s) that stands in the plane between the letter's two cameras. Images: " +
+      fixed(kHexagonRadius_m, 1) + " m, 0.40 m/s) that stands in the plane between the letter's two cameras. Images: " +
       std::to_string(plan.common.width_px) + " x " + std::to_string(3 * plan.common.width_px / 4) + ", " +
       std::string(plan.common.sensor) + " sensor, " + fixed(kFrameRate_hz) + " Hz, " +
       fixed(1000 * plan.common.frame_latency_s) + " ms late; commands every " + fixed(1000 * plan.common.period_s) +

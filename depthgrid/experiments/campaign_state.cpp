@@ -1,13 +1,13 @@
 #include "depthgrid/experiments/campaign_state.hpp"
 
-#include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/input/file_replacement.hpp"
+#include "depthgrid/experiments/text_output.hpp"
 
 namespace depthgrid::experiments {
 
@@ -110,12 +110,7 @@ void write_campaign_state(const fs::path& file, const CampaignState& state) {
     }
     json["motions"].push_back(std::move(entry));
   }
-  const std::string text = json.dump(1) + "\n";
-  input::FileReplacement replacement(file);
-  if (std::fwrite(text.data(), 1, text.size(), replacement.stream()) != text.size()) {
-    fail("cannot write ", file.string(), ": ", std::generic_category().message(errno));
-  }
-  replacement.commit();
+  write_text(file, json.dump(1) + "\n");
 }
 
 CampaignState read_campaign_state(const fs::path& file, const ordered_json& settings) {

@@ -4,12 +4,11 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <ctime>
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/input/file_replacement.hpp"
+#include "depthgrid/experiments/text_output.hpp"
 #include "depthgrid/report/machine.hpp"
 
 namespace depthgrid::experiments {
@@ -48,14 +47,6 @@ void check_folder(const fs::path& folder) {
   if (::access(place.c_str(), W_OK | X_OK) != 0) {
     fail("cannot write the report to ", folder.string(), ": ", std::generic_category().message(errno));
   }
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-  input::FileReplacement replacement(file);
-  if (std::fwrite(text.data(), 1, text.size(), replacement.stream()) != text.size()) {
-    fail("cannot write ", file.string(), ": ", std::generic_category().message(errno));
-  }
-  replacement.commit();
 }
 
 }  // namespace
