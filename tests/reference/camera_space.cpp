@@ -53,6 +53,7 @@ CameraSpace::CameraSpace(const CameraInput& input)
   }
   const DepthView& view = input.frame.depth;
   if (view.data == nullptr || view.width_px != camera_.width_px || view.height_px != camera_.height_px) {
+    note_first_depths();
     return;  // no frame: no measurement anywhere, nothing free
   }
   // D - m(D) of every pixel on its own, or the robot's exit where the pixel shows the robot.
@@ -92,33 +93,42 @@ CameraSpace::CameraSpace(const CameraInput& input)
       pixels_[index(u, v)].free_m = smallest_m;
     }
   }
-  note_strips();
+  note_first_depths();
 }
 
-void CameraSpace::note_strips() {
-  strips_a_row_ = (camera_.width_px + kStrip - 1) / kStrip;
-  strips_m_.assign(static_cast<std::size_t>(strips_a_row_) * static_cast<std::size_t>(camera_.height_px), kInfinity);
+void CameraSpace::note_first_depths() {
+  const auto blocks = [](int pixels) { return (pixels + kBlock - 1) / kBlock; };
+  blocks_a_row_ = blocks(camera_.width_px);
+  const auto row = static_cast<std::size_t>(blocks_a_row_);
+  strips_m_.assign(row * static_cast<std::size_t>(camera_.height_px), kInfinity);
+  blocks_m_.assign(row * static_cast<std::size_t>(blocks(camera_.height_px)), kInfinity);
   for (int v = 0; v < camera_.height_px; ++v) {
     for (int u = 0; u < camera_.width_px; ++u) {
-      double& first_m = strips_m_[static_cast<std::size_t>(v * strips_a_row_ + u / kStrip)];
       for (const auto& [d1_m, d2_m] : not_free_depths(u, v)) {
         if (d1_m < d2_m && d2_m > near_m_) {
-          first_m = std::min(first_m, d1_m);
+          double& strip_m = strips_m_[static_cast<std::size_t>(v * blocks_a_row_ + u / kBlock)];
+          double& block_m = blocks_m_[static_cast<std::size_t>(v / kBlock * blocks_a_row_ + u / kBlock)];
+          strip_m = std::min(strip_m, d1_m);
+          block_m = std::min(block_m, d1_m);
         }
       }
     }
   }
 }
 
-int CameraSpace::skip_free(int u, int v, int u_last, double z_low_m, double z_high_m) const {
-  if (strips_m_.empty() || z_low_m <= near_m_) {
-    return u;
+bool CameraSpace::block_matters(int i, int j, double z_low_m, double z_high_m, const Eigen::Vector3d& p_camera,
+                                double radius_m) const {
+  const double first_m = z_low_m <= near_m_ ? 0.0 : blocks_m_[static_cast<std::size_t>(j * blocks_a_row_ + i)];
+  if (first_m > z_high_m) {
+    return false;
   }
-  const double* const row = strips_m_.data() + static_cast<std::ptrdiff_t>(v) * strips_a_row_;
-  while (u <= u_last && row[u / kStrip] > z_high_m) {
-    u = (u / kStrip + 1) * kStrip;
-  }
-  return std::min(u, u_last + 1);
+  const PyramidPiece block{(i * kBlock - camera_.cx_px) / camera_.fx_px,
+                           ((i + 1) * kBlock - camera_.cx_px) / camera_.fx_px,
+                           (j * kBlock - camera_.cy_px) / camera_.fy_px,
+                           ((j + 1) * kBlock - camera_.cy_px) / camera_.fy_px,
+                           first_m,
+                           kInfinity};
+  return block.meets_ball(p_camera, radius_m + kRoundingM);
 }
 
 bool CameraSpace::not_free(const Eigen::Vector3d& p_world) const {
@@ -185,22 +195,16 @@ bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double rad
   if (!window) {
     return true;
   }
-  const int u_last = std::min(window->u_last, camera_.width_px - 1);
-  for (int v = std::max(window->v_first, 0); v <= std::min(window->v_last, camera_.height_px - 1); ++v) {
-    for (int u = std::max(window->u_first, 0); u <= u_last; ++u) {
-      u = skip_free(u, v, u_last, p.z() - radius_m, p.z() + radius_m);
-      if (u > u_last) {
-        break;
-      }
-      for (const auto& [d1_m, d2_m] : not_free_depths(u, v)) {
-        const bool in_reach = d1_m < d2_m && d1_m <= p.z() + radius_m && d2_m >= p.z() - radius_m;
-        if (in_reach && piece(u, v, d1_m, d2_m).meets_ball(p, radius_m)) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
+  const PixelWindow in_image{std::max(window->u_first, 0), std::max(window->v_first, 0),
+                             std::min(window->u_last, camera_.width_px - 1),
+                             std::min(window->v_last, camera_.height_px - 1)};
+  return any_pixel(in_image, p.z() - radius_m, p.z() + radius_m, p, radius_m, [&](int u, int v) {
+    const Depths depths = not_free_depths(u, v);
+    return std::any_of(depths.begin(), depths.end(), [&](const std::array<double, 2>& d) {
+      const bool in_reach = d[0] < d[1] && d[0] <= p.z() + radius_m && d[1] >= p.z() - radius_m;
+      return in_reach && piece(u, v, d[0], d[1]).meets_ball(p, radius_m);
+    });
+  });
 }
 
 bool CameraSpace::blocks(const Eigen::Vector3d& p_world) const {

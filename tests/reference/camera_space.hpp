@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <vector>
@@ -73,9 +74,12 @@ class CameraSpace {
 
   /// The depths z > 0 of a pixel of the image that are not free and not the robot.
   [[nodiscard]] Depths not_free_depths(int u, int v) const;
-  /// At least u, and at most the next pixel of the row, window's end included, with anything not free and not the robot
-  /// between the two depths. Saves looking at every pixel where nothing is.
-  [[nodiscard]] int skip_free(int u, int v, int u_last, double z_low_m, double z_high_m) const;
+  /// Asks visit(u, v) about the window's pixels until it says true, and returns that. Leaves out pixels whose pyramids
+  /// have nothing not free between the depths z_low_m and z_high_m or whose not free part is farther than radius_m from
+  /// p_camera, but not all of them: whole blocks are passed over. The window lies in the image.
+  template <class Visit>
+  [[nodiscard]] bool any_pixel(const PixelWindow& window, double z_low_m, double z_high_m,
+                               const Eigen::Vector3d& p_camera, double radius_m, const Visit& visit) const;
   /// The pixel's pyramid between two depths.
   [[nodiscard]] PyramidPiece piece(int u, int v, double d1_m, double d2_m) const;
   /// All pixels on which the hull of the corners projects, or nothing when it is not wholly before the camera.
@@ -101,8 +105,15 @@ class CameraSpace {
   [[nodiscard]] bool has_reach() const { return pose_.translation_m > 0 || pose_.rotation_rad > 0 || pose_.time_m > 0; }
 
  private:
-  static constexpr int kStrip = 16;
-  void note_strips();
+  static constexpr int kBlock = 16;
+  void note_first_depths();
+  /// Whether the block may hold something not free between the depths and within the radius.
+  [[nodiscard]] bool block_matters(int i, int j, double z_low_m, double z_high_m, const Eigen::Vector3d& p_camera,
+                                   double radius_m) const;
+  /// The same of a strip, by the depths alone.
+  [[nodiscard]] bool strip_matters(int i, int v, double z_low_m, double z_high_m) const {
+    return z_low_m <= near_m_ || strips_m_[static_cast<std::size_t>(v * blocks_a_row_ + i)] <= z_high_m;
+  }
 
   struct Pixel {
     double free_m = 0;        ///< g
@@ -123,9 +134,32 @@ class CameraSpace {
   std::array<double, 4> border_slopes_{};
   std::array<double, 4> border_scales_{};
   std::vector<Pixel> pixels_;
-  /// Of kStrip pixels side by side, row by row: least depth beyond the blind zone that is not free and not the robot.
-  std::vector<double> strips_m_;
-  int strips_a_row_ = 0;
+  /// Least depth beyond the blind zone that is not free and not the robot, row by row: of kBlock pixels side by side,
+  /// and of kBlock such strips below each other.
+  std::vector<double> strips_m_, blocks_m_;
+  int blocks_a_row_ = 0;
 };
+
+template <class Visit>
+bool CameraSpace::any_pixel(const PixelWindow& window, double z_low_m, double z_high_m, const Eigen::Vector3d& p_camera,
+                            double radius_m, const Visit& visit) const {
+  for (int j = window.v_first / kBlock; j <= window.v_last / kBlock; ++j) {
+    for (int i = window.u_first / kBlock; i <= window.u_last / kBlock; ++i) {
+      if (!block_matters(i, j, z_low_m, z_high_m, p_camera, radius_m)) {
+        continue;
+      }
+      const int v_last = std::min(window.v_last, (j + 1) * kBlock - 1);
+      const int u_last = std::min(window.u_last, (i + 1) * kBlock - 1);
+      for (int v = std::max(window.v_first, j * kBlock); v <= v_last; ++v) {
+        for (int u = std::max(window.u_first, i * kBlock); u <= u_last && strip_matters(i, v, z_low_m, z_high_m); ++u) {
+          if (visit(u, v)) {
+            return true;
+          }
+        }
+      }
+    }
+  }
+  return false;
+}
 
 }  // namespace depthgrid::reference

@@ -11,6 +11,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoundingM = 1e-9;
 /// Boxes that project on more pixels are too large to be decided by single pixels: subdividing them is cheaper.
 constexpr int kMostPixels = 2048;
+/// ...unless their half diagonal is this share of the reach, or less: then the reach makes them large.
+constexpr double kSmallBesideReach = 0.25;
 
 int width(const CameraSpace::PixelWindow& window) { return window.u_last - window.u_first + 1; }
 int height(const CameraSpace::PixelWindow& window) { return window.v_last - window.v_first + 1; }
@@ -108,38 +110,39 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
   }
   window = {std::max(window.u_first, 0), std::max(window.v_first, 0), std::min(window.u_last, image.width_px - 1),
             std::min(window.v_last, image.height_px - 1)};
-  const bool many = width(window) > 0 && height(window) > 0 && width(window) * height(window) > kMostPixels;
-  for (int v = window.v_first; v <= window.v_last && result_m > useless_m; ++v) {
-    for (int u = window.u_first; u <= window.u_last; ++u) {
-      u = camera_->skip_free(u, v, window.u_last, z_low, z_high);
-      if (u > window.u_last) {
-        break;
+  // Subdividing makes the window smaller only while the box is what makes it large.
+  const bool many = width(window) > 0 && height(window) > 0 && width(window) * height(window) > kMostPixels &&
+                    box.half_diagonal_m() > kSmallBesideReach * reach_m;
+  if (result_m <= useless_m) {
+    return std::max(result_m, 0.0);
+  }
+  (void)camera_->any_pixel(window, z_low, z_high, centre, radius_m, [&](int u, int v) {
+    const CameraSpace::Depths depths = camera_->not_free_depths(u, v);
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      const auto& [d1_m, d2_m] = depths[i];
+      if (d1_m >= d2_m || d1_m > z_high || d2_m < z_low) {
+        continue;
       }
-      const CameraSpace::Depths depths = camera_->not_free_depths(u, v);
-      for (std::size_t i = 0; i < depths.size(); ++i) {
-        const auto& [d1_m, d2_m] = depths[i];
-        if (d1_m >= d2_m || d1_m > z_high || d2_m < z_low) {
-          continue;
-        }
-        if (many) {
-          return 0;
-        }
-        const Known& known = piece_distance(u, v, i, depths[i]);
-        if (known.distance_m - reach_m < result_m && camera_->piece(u, v, d1_m, d2_m).meets_ball(centre, radius_m)) {
-          result_m = known.distance_m - reach_m;
-          // Into the pixel's middle and away from the border by less than matters.
-          const Eigen::Vector3d nearest = known.nearest.cast<double>();
-          const double z = nearest.z() + 1e-7;
-          const Eigen::Vector3d middle((u + 0.5 - image.cx_px) / image.fx_px * z,
-                                       (v + 0.5 - image.cy_px) / image.fy_px * z, z);
-          suspect_world_ = camera_->to_world(nearest + 1e-5 * (middle - nearest));
-          if (result_m <= useless_m) {
-            return result_m;
-          }
+      if (many) {
+        result_m = 0;
+        return true;
+      }
+      const Known& known = piece_distance(u, v, i, depths[i]);
+      if (known.distance_m - reach_m < result_m && camera_->piece(u, v, d1_m, d2_m).meets_ball(centre, radius_m)) {
+        result_m = known.distance_m - reach_m;
+        // Into the pixel's middle and away from the border by less than matters.
+        const Eigen::Vector3d nearest = known.nearest.cast<double>();
+        const double z = nearest.z() + 1e-7;
+        const Eigen::Vector3d middle((u + 0.5 - image.cx_px) / image.fx_px * z,
+                                     (v + 0.5 - image.cy_px) / image.fy_px * z, z);
+        suspect_world_ = camera_->to_world(nearest + 1e-5 * (middle - nearest));
+        if (result_m <= useless_m) {
+          return true;
         }
       }
     }
-  }
+    return false;
+  });
   return std::max(result_m, 0.0);
 }
 

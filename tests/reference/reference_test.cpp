@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 
 #include "reference/random_problem.hpp"
@@ -32,6 +33,46 @@ void for_random_problems(RandomOptions options, std::int64_t count, Check&& chec
 
 /// hi of an interval, or the cap: nothing was found within rho.
 double upper_m(const Interval& interval, double rho_m) { return interval.hi_m.value_or(rho_m); }
+
+/// ball_meets_not_free() without passing over anything, for balls inside the view.
+bool meets_some_pixel(const CameraSpace& camera, const Vector3d& p, double radius_m) {
+  for (int v = 0; v < camera.intrinsics().height_px; ++v) {
+    for (int u = 0; u < camera.intrinsics().width_px; ++u) {
+      for (const auto& [d1_m, d2_m] : camera.not_free_depths(u, v)) {
+        if (d1_m < d2_m && camera.piece(u, v, d1_m, d2_m).meets_ball(p, radius_m)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+TEST(Reference, BallsThatPassOverBlocksMeetWhatSomePixelHasNotFree) {
+  RandomOptions options;
+  options.cameras = 3;
+  std::array<int, 2> answers{};
+  for (const int width_px : {16, 50, 96}) {
+    options.width_px = width_px;
+    for_random_problems(options, 20, [&](const RandomProblem& random) {
+      const Reference reference(random.problem());
+      for (std::size_t k = 0; k < reference.camera_count(); ++k) {
+        const CameraSpace& camera = reference.camera(k);
+        for (const Vector3d& p_world : random.points_world) {
+          const Vector3d p = camera.to_camera(p_world);
+          for (const double radius_m : {0.0, 0.003, 0.02, 0.1, 0.4}) {
+            const auto inside_m = camera.inside_m(p);
+            const bool in_view = p.z() > radius_m && *std::min_element(inside_m.begin(), inside_m.end()) > radius_m;
+            const bool meets = !in_view || meets_some_pixel(camera, p, radius_m);
+            EXPECT_EQ(camera.ball_meets_not_free(p_world, radius_m), meets) << p.transpose() << ", " << radius_m;
+            answers.at(in_view && meets ? 1 : 0) += in_view ? 1 : 0;
+          }
+        }
+      }
+    });
+  }
+  EXPECT_TRUE(answers[0] > 50 && answers[1] > 50) << answers[0] << " no, " << answers[1] << " yes";
+}
 
 TEST(Reference, EnclosesTheExactDistanceOnTinyImages) {
   RandomOptions options;
