@@ -2,10 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "depthgrid/app/output_file.hpp"
 #include "depthgrid/app/progress_line.hpp"
@@ -19,7 +22,7 @@ namespace {
 struct ExperimentOptions {
   bool list = false;
   std::string name;
-  std::string out;
+  std::optional<std::string> out;
   experiments::Options experiment;
 };
 
@@ -73,7 +76,7 @@ void run(ExperimentOptions options) {
     fail_usage("experiment needs a NAME; depthgrid experiment --list shows them");
   }
   const experiments::Experiment& experiment = chosen(options);
-  options.experiment.out = options.out.empty() ? "experiment-" + options.name : options.out;
+  options.experiment.out = options.out.value_or("experiment-" + options.name);
   options.experiment.command_line = command_line(options);
   std::optional<ProgressLine> line;
   std::size_t of = 0;
@@ -102,8 +105,12 @@ void add_experiment_command(CLI::App& app) {
                       "experiment-NAME)");
   command->add_flag("--quick", options->experiment.quick, "smaller images and fewer frames");
   command->add_option("--seed", options->experiment.seed, "of everything random")
-      ->check([](const std::string& text) {  // an unsigned number is read from "-1" without complaint
-        return text.find('-') == std::string::npos ? "" : text + " must be a whole number, 0 or more";
+      ->check([](const std::string& text) {  // "-1" and numbers that are too large are read without complaint
+        std::uint64_t seed = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+        return error == std::errc() && end == text.data() + text.size()
+                   ? ""
+                   : "'" + text + "' must be a whole number from 0 to 18446744073709551615";
       })
       ->capture_default_str();
   command->add_option("--frames", options->experiment.frames, "instants of time (default: the experiment's own)");

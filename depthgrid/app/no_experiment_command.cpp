@@ -12,8 +12,8 @@ void add_experiment_command(CLI::App& app) {
   command->allow_extras();
   command->callback([] {
     fail(
-        "experiment needs the simulated workcell, which this build leaves out; build with "
-        "-DDEPTHGRID_BUILD_WORKCELL=ON (needs Embree and FCL)");
+        "experiment needs the simulated workcell, which this build leaves out; ./scripts/test builds it, or configure "
+        "with -DDEPTHGRID_BUILD_WORKCELL=ON (needs libembree-dev and libfcl-dev)");
   });
 }
 

@@ -89,14 +89,22 @@ report::Canvas picture_of_paths(const Comparison& comparison, const std::vector<
   return canvas;
 }
 
-/// One line a method over time.
+bool is_shown(Method /*method*/) { return true; }
+/// What does not avoid evaluates nothing.
+bool evaluates(Method method) { return method != Method::none; }
+
+/// One line a method over time, of those that `shows` says.
 template <class Value>
-report::Plot over_time(const Comparison& comparison, std::string name, std::string label, Value value) {
+report::Plot over_time(const Comparison& comparison, std::string name, std::string label, bool (*shows)(Method),
+                       Value value) {
   report::Plot plot;
   plot.title = std::move(name);
   plot.x_label = "time (s)";
   plot.y_label = std::move(label);
   for (const auto& [method, run] : comparison.runs) {
+    if (!shows(method)) {
+      continue;
+    }
     report::Series series{std::string(title(method)), {}, {}, false, true};
     for (const RunSample& sample : run.samples) {
       series.x.push_back(sample.time_s);
@@ -117,13 +125,13 @@ report::Canvas picture_over_time(const Comparison& comparison) {
   };
   const double shown_m = 1.0;
   const std::vector<report::Plot> plots{
-      over_time(comparison, "true distance from the moving links to the person", "m (1 and more: 1)",
+      over_time(comparison, "true distance from the moving links to the person", "m (1 and more: 1)", is_shown,
                 [&](const RunSample& sample) { return std::min(shown_m, sample.true_person_m); }),
-      over_time(comparison, "distance of the end effector as evaluated", "m (0.4: nothing near)",
+      over_time(comparison, "distance of the end effector as evaluated", "m (0.4: nothing near)", evaluates,
                 [](const RunSample& sample) { return sample.told_m.front(); }),
       over_time(comparison, "smallest distance of the other points or links as evaluated", "m (0.4: nothing near)",
-                body_m),
-      over_time(comparison, "repulsive velocity of the end effector", "m/s",
+                evaluates, body_m),
+      over_time(comparison, "repulsive velocity of the end effector", "m/s", evaluates,
                 [](const RunSample& sample) { return sample.repulsion_m_s.norm(); })};
   report::Canvas canvas(1000, 1200);
   for (std::size_t i = 0; i < plots.size(); ++i) {
@@ -172,12 +180,18 @@ void report_comparison(const Comparison& comparison, const std::vector<Eigen::Ve
   }
   report.paragraph("## " + comparison.sensor + " sensor");
   report.paragraph(table.text());
+  report.paragraph(
+      "robot_stood: when the contact began the touched point came towards the person at no more than 0.05 m/s. "
+      "robot_came: it came faster. A vertex is reached when the end effector has passed it; \"s per vertex\" counts "
+      "parts "
+      "of a side, too.");
   report.picture("paths-" + comparison.sensor + ".png", picture_of_paths(comparison, hexagon),
                  "The end effector's path (red) and the hexagon (blue), seen along its normal.");
   report.picture(
       "over-time-" + comparison.sensor + ".png", picture_over_time(comparison),
       "Distances and repulsion over time. The letter's distances are those of points on the links' axes, the "
-      "search's those of the links' surfaces, less what may have come nearer since the exposure.");
+      "search's those of the links' surfaces, less what may have come nearer since the exposure. Lines that come "
+      "later in the legend are drawn over those before.");
 }
 
 }  // namespace

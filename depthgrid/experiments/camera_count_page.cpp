@@ -116,12 +116,14 @@ void report_growth(const std::vector<CameraCount>& counts, ExperimentReport& rep
               percent(linear_fit(counts, method).r_squared, 0) + " of its variance)";
   }
   report.headline(growth + ".");
-  report.headline(
-      "Within 0.4 m of the arm the gray area falls from " + percent(counts[0].gray.share_near()) +
-      " with one camera to " + percent(counts[1].gray.share_near()) + " with two and " +
-      percent(counts[last].gray.share_near()) + " with eight; points of the robot that touch a pocket from " +
-      pockets_text(counts[0].methods[kCountedSearch]) + " to " + pockets_text(counts[1].methods[kCountedSearch]) +
-      " and " + pockets_text(counts[last].methods[kCountedSearch]) + ".");
+  report.headline("Within 0.4 m of the arm the gray area falls from " + percent(counts[0].gray.share_near()) +
+                  " with one camera to " + percent(counts[1].gray.share_near()) + " with two and " +
+                  percent(counts[last].gray.share_near()) + " with eight.");
+  std::string pockets;
+  for (const CameraCount& count : counts) {
+    pockets += (pockets.empty() ? "" : ", ") + pockets_text(count.methods[kCountedSearch]);
+  }
+  report.headline("Points of the robot that touch a pocket, with one, two, ... cameras: " + pockets + ".");
 }
 
 void report_tables(const std::vector<CameraCount>& counts, ExperimentReport& report) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "depthgrid/experiments/campaign_motions.hpp"
 #include "depthgrid/experiments/campaign_totals.hpp"
 #include "depthgrid/experiments/experiment_report.hpp"
 #include "depthgrid/experiments/number_text.hpp"
@@ -105,6 +106,9 @@ void say_what_was_done(const CampaignPlan& plan, const CampaignState& state, Exp
       " m), with v_max = " + fixed(plan.common.v_max_m_s, 1) +
       " m/s. All that nobody sees is an obstacle to it; in the last row pockets of up to " +
       fixed(plan.common.ignored_pocket_m, 2) + " m right behind the robot are not (declared).");
+  const bool recordings = state.settings.value("recordings", false);
+  report.paragraph(recordings ? "One motion in six is a recorded one (CMU motion capture, subject 02)."
+                              : "Scripted motions only: no recordings were found in " + mocap_folder().string() + ".");
 }
 
 ordered_json figures_of_totals(Method method, const MethodTotals& sum, double alone_s) {

@@ -97,6 +97,23 @@ RunSummary summary_from(const ordered_json& json) {
   return run;
 }
 
+/// The settings that differ, as "seed 2 instead of 1".
+std::string differences(const ordered_json& has, const ordered_json& wanted) {
+  const auto text = [](const ordered_json& json, const std::string& key) {
+    return json.contains(key) ? json.at(key).dump() : std::string("none");
+  };
+  std::string result;
+  for (const ordered_json* json : {&wanted, &has}) {
+    for (const auto& [key, value] : json->items()) {
+      const std::string line = key + " " + text(has, key) + " instead of " + text(wanted, key);
+      if (text(has, key) != text(wanted, key) && result.find(line) == std::string::npos) {
+        result += (result.empty() ? "" : ", ") + line;
+      }
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void write_campaign_state(const fs::path& file, const CampaignState& state) {
@@ -120,13 +137,16 @@ CampaignState read_campaign_state(const fs::path& file, const ordered_json& sett
   if (!fs::exists(file, error)) {
     return state;
   }
+  if (!fs::is_regular_file(file, error)) {
+    fail(file.string(), ": is no file; remove it, or give another --out");
+  }
   std::ifstream in(file);
   const ordered_json json = ordered_json::parse(in, nullptr, false);
   if (json.is_discarded() || !json.is_object() || !json.contains("campaign") || !json.contains("motions")) {
     fail(file.string(), ": is no state of a campaign; remove it, or give another --out");
   }
   if (json["campaign"] != settings) {
-    fail(file.string(), ": belongs to a campaign with ", json["campaign"].dump(), ", not ", settings.dump(),
+    fail(file.string(), ": belongs to another campaign, with ", differences(json["campaign"], settings),
          "; give another --out");
   }
   try {

@@ -39,6 +39,9 @@ void check_folder(const fs::path& folder) {
   if (!fs::is_directory(folder, error)) {
     place = fs::absolute(folder).lexically_normal();
     place = (place.has_filename() ? place : place.parent_path()).parent_path();
+    if (fs::exists(place, error) && !fs::is_directory(place, error)) {
+      fail("cannot write the report to ", folder.string(), ": ", place.string(), " is a file");
+    }
     if (!fs::is_directory(place, error)) {
       fail("cannot write the report to ", folder.string(), ": there is no folder ", place.string(),
            "; create it first");
@@ -46,6 +49,11 @@ void check_folder(const fs::path& folder) {
   }
   if (::access(place.c_str(), W_OK | X_OK) != 0) {
     fail("cannot write the report to ", folder.string(), ": ", std::generic_category().message(errno));
+  }
+  for (const char* name : {"report.md", "figures.json"}) {
+    if (fs::is_directory(folder / name, error)) {
+      fail("cannot write the report to ", folder.string(), ": ", (folder / name).string(), " is a folder");
+    }
   }
 }
 

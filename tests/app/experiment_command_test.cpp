@@ -53,6 +53,8 @@ TEST(Experiment, BrokenCommandsEndInOneLineAndLeaveNothing) {
            Broken{"experiment shadow --width 33", 2, "width is 33 px"},
            Broken{"experiment shadow --width wide", 2, "wide"},
            Broken{"experiment shadow --seed -1", 2, "seed"},
+           Broken{"experiment shadow --seed 99999999999999999999", 2, "whole number"},
+           Broken{"experiment shadow --out ''", 1, "--out"},
            Broken{"experiment shadow hidden-hand", 2, "hidden-hand"},
        }) {
     const TemporaryFolder folder;

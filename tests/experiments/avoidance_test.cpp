@@ -253,7 +253,8 @@ TEST(CampaignFile, RefusesWhatDoesNotBelongToIt) {
   EXPECT_EQ(refused(plan), "");
   CampaignPlan other = plan;
   other.seed = 2;
-  EXPECT_THAT(refused(other), HasSubstr("state.json: belongs to a campaign with"));
+  EXPECT_EQ(refused(other), file.string() + ": belongs to another campaign, with seed " + std::to_string(plan.seed) +
+                                " instead of 2; give another --out");
   for (double AvoidanceSettings::*setting :
        {&AvoidanceSettings::period_s, &AvoidanceSettings::frame_latency_s, &AvoidanceSettings::rho_m,
         &AvoidanceSettings::repulsion_m_s, &AvoidanceSettings::v_max_m_s, &AvoidanceSettings::ignored_pocket_m,
@@ -261,12 +262,15 @@ TEST(CampaignFile, RefusesWhatDoesNotBelongToIt) {
         &AvoidanceSettings::removal_padding_m}) {
     other = plan;
     other.common.*setting *= 2;
-    EXPECT_THAT(refused(other), HasSubstr("belongs to a campaign with")) << settings_of(other, false).dump();
+    EXPECT_THAT(refused(other), HasSubstr("belongs to another campaign, with ")) << settings_of(other, false).dump();
   }
   EXPECT_TRUE(settings_of(plan, false).contains("program"));
   std::ofstream(file) << "{\"campaign\": ";
   EXPECT_THAT(test::thrown_message([&] { (void)read_campaign_state(file, settings_of(plan, false)); }),
               HasSubstr("state.json: is no state of a campaign"));
+  std::filesystem::remove(file);
+  std::filesystem::create_directory(file);
+  EXPECT_THAT(refused(plan), HasSubstr("state.json: is no file"));
 }
 
 }  // namespace

@@ -65,7 +65,10 @@ TEST(ExperimentReport, WrongFoldersAreRefusedBeforeTheRun) {
     return test::thrown_message([&] { (void)run_experiment({"failing", "fails", failing_run}, options); });
   };
   EXPECT_THAT(message(folder / "file"), HasSubstr("it is a file"));
+  EXPECT_THAT(message(folder / "file/report"), HasSubstr("file is a file"));
   EXPECT_THAT(message(folder / "none/report"), HasSubstr("there is no folder"));
+  std::filesystem::create_directories(folder / "taken/report.md");
+  EXPECT_THAT(message(folder / "taken"), HasSubstr("report.md is a folder"));
   EXPECT_THAT(message(""), HasSubstr("--out"));
 }
 
