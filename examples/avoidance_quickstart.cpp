@@ -32,6 +32,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
+#include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/urdf.hpp"
 
 namespace avoidance = depthgrid::avoidance;
@@ -48,7 +49,7 @@ constexpr double kImageLatency_s = 0.02;      // from the exposure until the ima
 constexpr double kRho_m = 0.4;                // nearer obstacles change the motion
 constexpr double kFastestObstacle_m_s = 1.6;  // a person who walks
 constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kHeight = 288;
 
 // YOURS: where the base link of the URDF stands in the cameras' world frame. Here the world is a mark on the floor, z
 // up; the base stands on a table of 0.7 m and is turned by 90 degrees. From a calibration: pose_from_matrix().
@@ -62,14 +63,14 @@ Pose base_in_world() {
 // YOURS: the cameras. Intrinsics as OpenCV or ROS give them; T_world_camera maps camera (x right, y down, z forward) to
 // world coordinates.
 depthgrid::Rig two_cameras() {
-  const depthgrid::SensorModel& sensor = depthgrid::sensor_model("realsense_d455");
+  const depthgrid::SensorModel& sensor = depthgrid::sensor_model("azure_kinect_nfov_binned");
   depthgrid::Rig rig;
   rig.name = "cell";
   const std::array<Eigen::Vector3d, 2> places = {{{2.3, 1.6, 2.0}, {-1.9, 1.5, 2.0}}};
   for (const Eigen::Vector3d& place : places) {
     depthgrid::RigCamera& camera = rig.cameras.emplace_back();
     camera.id = "camera " + std::to_string(rig.cameras.size());
-    camera.intrinsics = depthgrid::from_opencv(kWidth, kHeight, 190.0, 190.0, 159.5, 119.5);
+    camera.intrinsics = depthgrid::from_opencv(kWidth, kHeight, 252.0, 252.0, 159.5, 143.5);
     camera.T_world_camera = depthgrid::look_at(place, {0.3, 0.2, 1.1});
     camera.metres_per_unit = 0.001;
     camera.rule = sensor.rule;
@@ -80,23 +81,50 @@ depthgrid::Rig two_cameras() {
   return rig;
 }
 
-// YOURS: one image of a camera, in millimetres. Stands for a driver: a wall 4 m before the camera, and a ball of 0.3 m
-// that comes towards the arm for a second and goes away again. The arm itself is not drawn; in real images FrameIntake
-// takes it out.
-void image_from_driver(const depthgrid::RigCamera& camera, const Eigen::Vector3d& ball_world,
-                       std::vector<std::uint16_t>& pixels) {
-  constexpr double kBallRadius_m = 0.15;
-  const Eigen::Vector3d c = camera.T_world_camera.inverse(Eigen::Isometry) * ball_world;
-  for (int v = 0; v < kHeight; ++v) {
-    for (int u = 0; u < kWidth; ++u) {
-      const Eigen::Vector3d ray = depthgrid::deproject(camera.intrinsics, {u + 0.5, v + 0.5, 1.0});  // depth 1
-      const double b = ray.dot(c) / ray.squaredNorm();
-      const double root = b * b - (c.squaredNorm() - kBallRadius_m * kBallRadius_m) / ray.squaredNorm();
-      const double depth_m = root > 0 ? b - std::sqrt(root) : 4.0;
-      pixels[static_cast<std::size_t>(v * kWidth + u)] = static_cast<std::uint16_t>(std::lround(depth_m * 1000));
+// YOURS: a camera's driver. This one draws a wall 4 m before the camera, the arm, and a ball of 0.3 m.
+class MyCamera {
+ public:
+  MyCamera(const depthgrid::RigCamera& camera, const robot::RobotModel& model, const robot::JointHistory& history)
+      : camera_(camera),
+        arm_(model, history, camera.intrinsics, robot::link_capsules(model), drawn_arm()),
+        pixels_(std::size_t{kWidth} * kHeight) {}
+
+  // The image exposed at a time, in millimetres; good until the next call.
+  depthgrid::DepthView image(double exposed_s, const Eigen::Vector3d& ball_world) {
+    constexpr double kBallRadius_m = 0.15;
+    const Eigen::Vector3d c = camera_.T_world_camera.inverse(Eigen::Isometry) * ball_world;
+    const depthgrid::RobotView arm = arm_.find(exposed_s, camera_.T_world_camera).view;
+    for (int v = 0; v < kHeight; ++v) {
+      for (int u = 0; u < kWidth; ++u) {
+        double depth_m = 4.0;
+        const Eigen::Vector3d ray = depthgrid::deproject(camera_.intrinsics, {u + 0.5, v + 0.5, 1.0});
+        const double b = ray.dot(c) / ray.squaredNorm();
+        const double root = b * b - (c.squaredNorm() - kBallRadius_m * kBallRadius_m) / ray.squaredNorm();
+        if (root > 0) {
+          depth_m = b - std::sqrt(root);
+        }
+        const double arm_m = arm.near_m != nullptr ? double{arm.near_m[v * arm.stride_px + u]} : 0.0;
+        if (arm_m > 0) {
+          depth_m = std::min(depth_m, arm_m);
+        }
+        pixels_[static_cast<std::size_t>(v * kWidth + u)] = static_cast<std::uint16_t>(std::lround(1000 * depth_m));
+      }
     }
+    return depthgrid::depth_view(pixels_, kWidth, kHeight, camera_.metres_per_unit);
   }
-}
+
+ private:
+  static robot::ExposureSettings drawn_arm() {
+    robot::ExposureSettings settings;
+    settings.T_world_base = base_in_world();
+    settings.removal.whole_pixels = false;
+    return settings;
+  }
+
+  depthgrid::RigCamera camera_;
+  robot::RobotAtExposure arm_;
+  std::vector<std::uint16_t> pixels_;
+};
 
 // YOURS: the arm's driver goes in here. Both functions are called once a period, by the thread that calls cycle();
 // neither may throw or wait. The order of the joints is that of model.joints().
@@ -164,8 +192,11 @@ void print(double time_s, const robot::RobotModel& model, const avoidance::LoopS
   if (!loop.answers()[nearest].obstacle.distance_m) {
     std::printf("%.1f s  no images yet, distances are unknown", time_s);
   } else if (distance_m(nearest) < kRho_m) {
-    std::printf("%.1f s  %s is %.3f m from the nearest obstacle", time_s,
-                model.links()[settings.parts[nearest].link].name.c_str(), distance_m(nearest));
+    // "measured" is a surface; "occluded", "unobserved" and the like are space that nobody has seen free.
+    const auto state = depthgrid::to_string(loop.answers()[nearest].nearest.state);
+    std::printf("%.1f s  %s is %.3f m from the nearest obstacle (%.*s)", time_s,
+                model.links()[settings.parts[nearest].link].name.c_str(), distance_m(nearest),
+                static_cast<int>(state.size()), state.data());
   } else {
     std::printf("%.1f s  nothing is nearer than %.1f m", time_s, kRho_m);
   }
@@ -227,8 +258,10 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   // 4. What takes the arm out of the images.
   robot::ExposureSettings exposure;
   exposure.T_world_base = T_world_base;
-  exposure.removal.padding_m = 0.04;  // YOURS: docs/robot.md says what it has to cover, and what it hides
-  exposure.time_error_s = 0.005;      // between the clocks of joints and cameras, half the exposure included
+  // YOURS: no less than the sensor's margin (64 mm here) and the errors of calibration and model, or the arm is taken
+  // for an obstacle and stops; what is nearer to it than this is not seen (docs/robot.md).
+  exposure.removal.padding_m = 0.085;
+  exposure.time_error_s = 0.005;  // between the clocks of joints and cameras, half the exposure included
   avoidance::FrameIntake intake(rig, model, history, exposure);
 
   avoidance::AvoidanceLoop loop(model, history, source, settings);
@@ -237,7 +270,8 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
     std::fprintf(stderr, "the robot gives no state\n");
     return 1;
   }
-  std::vector<std::vector<std::uint16_t>> pixels(2, std::vector<std::uint16_t>(std::size_t{kWidth} * kHeight));
+  std::array<MyCamera, 2> cameras = {MyCamera(rig.cameras[0], model, history),
+                                     MyCamera(rig.cameras[1], model, history)};
   Eigen::Vector3d tip_before_world = tip_start_world;
   for (int k = 0; k <= 1000; ++k) {
     const double now_s = k * kPeriod_s;  // YOURS: the cameras' clock
@@ -247,13 +281,11 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
     const double exposed_s = now_s - kImageLatency_s;
     const bool new_images = std::floor(exposed_s / kFrameTime_s) > std::floor((exposed_s - kPeriod_s) / kFrameTime_s);
     if (exposed_s >= 0 && new_images) {
+      // The ball comes towards the arm for a second, and goes away again.
       const Eigen::Vector3d ball_world =
           tip_start_world + Eigen::Vector3d(0, 0.40 + 0.7 * std::abs(exposed_s - 1.0), 0);
-      std::array<depthgrid::DepthView, 2> images;
-      for (std::size_t i = 0; i < images.size(); ++i) {
-        image_from_driver(rig.cameras[i], ball_world, pixels[i]);
-        images[i] = depthgrid::depth_view(pixels[i], kWidth, kHeight, rig.cameras[i].metres_per_unit);
-      }
+      const std::array<depthgrid::DepthView, 2> images = {cameras[0].image(exposed_s, ball_world),
+                                                          cameras[1].image(exposed_s, ball_world)};
       if (!source.take(intake.frames(images, exposed_s))) {
         std::fprintf(stderr, "%.3f s: an image could not be used\n", now_s);
       }
