@@ -8,13 +8,10 @@
 //   target_link_libraries(avoidance_quickstart PRIVATE depthgrid::avoidance)     brings search, robot and control along
 //
 // Frames   All positions are in one world frame: that in which the cameras were calibrated. T_world_base places the
-// robot
-//          in it, and has to be given twice: to the loop, and to what takes the robot out of the images.
+//          robot in it, and is given twice: to the loop, and to what takes the robot out of the images.
 // Threads  cycle() belongs to the robot's thread, frames() and take() to one other thread, that of the cameras. Here
-// both
-//          take turns in simulated time.
-// Errors   construction throws depthgrid::Error; the loop afterwards throws nothing, allocates nothing and takes no
-// lock.
+//          they take turns in simulated time.
+// Errors   construction throws depthgrid::Error; the loop afterwards throws nothing, allocates nothing, takes no lock.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -210,7 +207,7 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   const std::size_t tip_link = model.link_index(tip_name);
   const control::JointLimits limits = joint_limits(model);
 
-  // Where the arm stands when it starts. YOURS: nothing to do, a real arm says so itself.
+  // Where the arm stands when it starts: posture and task are made from it. YOURS: as your arm says.
   const control::JointVector q_start = 0.4 * limits.lowest_rad + 0.6 * limits.highest_rad;
   std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
   (void)model.link_poses({q_start.data(), model.joints().size()}, T_world_base, T_world_link);
@@ -232,8 +229,7 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   settings.task.vertices_world = {tip_start_world, tip_start_world + Eigen::Vector3d(0, 0, -0.2)};
   settings.task.speed_m_s = 0.2;
 
-  // 2. Where distances come from. What counts as an obstacle has no default; docs/search.md says what each choice gives
-  // up.
+  // 2. Where distances come from. What counts as an obstacle has no default (docs/search.md).
   const depthgrid::Rig rig = two_cameras();
   search::Settings what;
   what.space = search::BoxSpace{{-1.5, -1.6, 0.2}, {2.1, 2.0, 2.6}};  // YOURS: the arm's reach and rho around it; world
@@ -246,13 +242,11 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   what.resolution_m = 0.01;
   // The loop subtracts what may have come nearer since the exposure: with this much more, kRho_m is left.
   what.rho_m = kRho_m + kFastestObstacle_m_s * (kImageLatency_s + kFrameTime_s + settings.evaluate_every * kPeriod_s);
-  // YOURS: on a real arm end an evaluation within the period, {.nodes = 0, .time_s = 0.0012} for one. Here time stands
-  // still.
+  // YOURS: on a real arm end an evaluation within the period, {.nodes = 0, .time_s = 0.0012}. Here time waits.
   avoidance::SearchDistances source(rig, what, settings.parts.size(), {.nodes = 0, .time_s = 0});
 
-  // 3. Joint positions of the last moments: how many joints, how many samples are kept (2 s), the longest gap to
-  // interpolate
-  //    over, and how long the newest sample may stand for an exposure after it. On the cameras' clock.
+  // 3. Joint positions of the last moments, on the cameras' clock: how many joints, how many samples are kept (2 s), the
+  //    longest gap to interpolate over, and how long the newest sample may stand for an exposure after it, seconds.
   robot::JointHistory history(model.joints().size(), 1000, 0.02, 0.01);
 
   // 4. What takes the arm out of the images.
