@@ -245,8 +245,8 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   // YOURS: on a real arm end an evaluation within the period, {.nodes = 0, .time_s = 0.0012}. Here time waits.
   avoidance::SearchDistances source(rig, what, settings.parts.size(), {.nodes = 0, .time_s = 0});
 
-  // 3. Joint positions of the last moments, on the cameras' clock: how many joints, how many samples are kept (2 s), the
-  //    longest gap to interpolate over, and how long the newest sample may stand for an exposure after it, seconds.
+  // 3. Joint positions of the last moments, on the cameras' clock: how many joints, how many samples are kept (2 s),
+  //    the longest gap to interpolate over, and how long the newest sample may stand for later exposures, seconds.
   robot::JointHistory history(model.joints().size(), 1000, 0.02, 0.01);
 
   // 4. What takes the arm out of the images.
