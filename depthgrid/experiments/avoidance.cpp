@@ -102,13 +102,13 @@ report::Plot over_time(const Comparison& comparison, std::string name, std::stri
   plot.x_label = "time (s)";
   plot.y_label = std::move(label);
   for (const auto& [method, run] : comparison.runs) {
-    if (!shows(method)) {
-      continue;
-    }
-    report::Series series{std::string(title(method)), {}, {}, false, true};
+    // A method keeps its colour in all plots.
+    report::Series series{std::string(title(method)) + (shows(method) ? "" : ": none"), {}, {}, false, true};
     for (const RunSample& sample : run.samples) {
-      series.x.push_back(sample.time_s);
-      series.y.push_back(value(sample));
+      if (shows(method)) {
+        series.x.push_back(sample.time_s);
+        series.y.push_back(value(sample));
+      }
     }
     plot.series.push_back(std::move(series));
   }

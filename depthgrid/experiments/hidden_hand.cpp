@@ -109,8 +109,8 @@ void run_hidden_hand(const Options& options, ExperimentReport& report) {
   const GroupedDeviations figures = measure_hidden_hand(options, &report);
   const auto too_far = [&](std::size_t candidate) {
     const Deviation& deviation = figures.chosen[candidate].deviation;
-    return percent(deviation.overestimates()) + " of the answers, " + fixed(1000 * deviation.largest_overestimate_m()) +
-           " mm at most";
+    return percent(deviation.overestimates()) + " of the answers (" + fixed(1000 * deviation.largest_overestimate_m()) +
+           " mm at most)";
   };
   report.headline(
       "The hand comes as near as " + fixed(figures.person_to_arm_m, 2) +
