@@ -4,18 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "depthgrid/search/rounding.hpp"
+
 namespace depthgrid::search {
 namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr double kUlp = 0x1p-24;  ///< the largest relative error of one rounding in single precision
-
-float rounded_down(double value) noexcept {
-  const auto nearest = static_cast<float>(std::clamp(value, -static_cast<double>(kLargest), double{kLargest}));
-  return static_cast<double>(nearest) > value ? std::nextafter(nearest, -kLargest) : nearest;
-}
-
-float rounded_up(double value) noexcept { return -rounded_down(-value); }
 
 /// Where D - m(D) is positive, every intermediate result of x (slope - curve x) - constant is at most x times the
 /// scale, so its four operations err by at most one kUlp of that each. x times the scale differs from D by one kUlp,

@@ -7,6 +7,7 @@
 #include "depthgrid/search/image_preparation.hpp"
 #include "depthgrid/search/pyramid_rows.hpp"
 #include "depthgrid/search/reading.hpp"
+#include "depthgrid/search/rounding.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -21,14 +22,7 @@ std::ptrdiff_t row_bytes(DepthFormat format, int width_px) noexcept {
 }
 
 float pocket_m(const Policies& policies) noexcept {
-  const double exact_m = policies.robot_pockets == Policy::ignored ? policies.ignored_pocket_m : 0.0;
-  const auto nearest_m = static_cast<float>(std::min(exact_m, static_cast<double>(std::numeric_limits<float>::max())));
-  return static_cast<double>(nearest_m) > exact_m ? std::nextafter(nearest_m, 0.0F) : nearest_m;
-}
-
-float not_below(double value) noexcept {
-  const auto nearest = static_cast<float>(value);
-  return static_cast<double>(nearest) < value ? std::nextafter(nearest, kInf) : nearest;
+  return policies.robot_pockets == Policy::ignored ? rounded_down(policies.ignored_pocket_m) : 0.0F;
 }
 
 }  // namespace
@@ -54,7 +48,7 @@ struct View::Preparation {
         reading(camera.rule, camera.metres_per_unit, margins.sensor),
         reach_px(margins.sensor.lateral_px),
         pocket(pocket_m(policies)),
-        blind_m(not_below(camera.rule.near_m)),
+        blind_m(rounded_up(camera.rule.near_m)),
         rows(camera.intrinsics.width_px, camera.intrinsics.height_px, reach_px),
         island_columns(static_cast<std::size_t>(camera.intrinsics.height_px)) {}
 
