@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/grid/map_file.hpp"
+#include "depthgrid/grid/map/map_file.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "depthgrid/core/pose.hpp"
-#include "depthgrid/grid/map_builder.hpp"
-#include "depthgrid/grid/map_file.hpp"
+#include "depthgrid/grid/map/map_builder.hpp"
+#include "depthgrid/grid/map/map_file.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/input/rig_file.hpp"
+#include "depthgrid/files/rig_file.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/grid/closed_form_map.hpp"
-#include "depthgrid/grid/one_pixel_map.hpp"
-#include "depthgrid/grid/pixel_list_map.hpp"
+#include "depthgrid/grid/map/one_pixel_map.hpp"
+#include "depthgrid/grid/map/pixel_list_map.hpp"
 
 namespace depthgrid::grid {
 

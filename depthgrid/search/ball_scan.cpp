@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "depthgrid/search/ball_scan.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target: it must be seen once for each target.
-#include "depthgrid/search/lanes-inl.hpp"
+#include "depthgrid/core/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {

@@ -6,7 +6,7 @@
 #define DEPTHGRID_SEARCH_BOXES_INL
 #endif
 
-#include "depthgrid/search/lanes-inl.hpp"
+#include "depthgrid/core/lanes-inl.hpp"
 #include "depthgrid/search/local_camera.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "depthgrid/core/proximity.hpp"
-#include "depthgrid/search/view_store.hpp"
+#include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "depthgrid/core/camera.hpp"
-#include "depthgrid/search/view_store.hpp"
+#include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
 

@@ -18,7 +18,7 @@
 
 #include "depthgrid/core/proximity.hpp"
 #include "depthgrid/search/primitive.hpp"
-#include "depthgrid/search/view_store.hpp"
+#include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
 

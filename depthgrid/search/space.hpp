@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "depthgrid/search/view_store.hpp"
+#include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
 

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "depthgrid/input/control_points.hpp"
-#include "depthgrid/input/png.hpp"
-#include "depthgrid/input/rig_file.hpp"
+#include "depthgrid/files/control_points.hpp"
+#include "depthgrid/files/png.hpp"
+#include "depthgrid/files/rig_file.hpp"
 #include "depthgrid/search/search.hpp"
 
 namespace search = depthgrid::search;

@@ -8,7 +8,7 @@
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
-#include "depthgrid/search/settings.hpp"
+#include "depthgrid/views/settings.hpp"
 
 namespace depthgrid::avoidance::test {
 

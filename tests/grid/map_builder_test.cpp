@@ -1,5 +1,5 @@
 // Building maps: the same table whatever the number of threads, progress, cancelling, and refusing what does not fit.
-#include "depthgrid/grid/map_builder.hpp"
+#include "depthgrid/grid/map/map_builder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "depthgrid/grid/machine_memory.hpp"
-#include "depthgrid/grid/piecework.hpp"
+#include "depthgrid/grid/map/machine_memory.hpp"
+#include "depthgrid/grid/map/piecework.hpp"
 #include "grid/map_rigs.hpp"
 
 namespace depthgrid::grid {

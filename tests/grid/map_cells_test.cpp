@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "depthgrid/grid/map_builder.hpp"
+#include "depthgrid/grid/map/map_builder.hpp"
 #include "grid/map_rigs.hpp"
 #include "support/random_run.hpp"
 

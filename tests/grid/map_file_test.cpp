@@ -1,5 +1,5 @@
 // Map files: there and back, and every kind of broken file with its message.
-#include "depthgrid/grid/map_file.hpp"
+#include "depthgrid/grid/map/map_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <iterator>
 #include <vector>
 
-#include "depthgrid/grid/map_builder.hpp"
+#include "depthgrid/grid/map/map_builder.hpp"
 #include "grid/map_rigs.hpp"
 
 namespace depthgrid::grid {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "depthgrid/grid/cell_footprint.hpp"
+#include "depthgrid/grid/map/cell_footprint.hpp"
 #include "grid/map_rigs.hpp"
 #include "support/random_run.hpp"
 

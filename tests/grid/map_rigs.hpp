@@ -12,7 +12,7 @@
 #include "depthgrid/core/pose.hpp"
 #include "depthgrid/grid/closed_form_map.hpp"
 #include "depthgrid/grid/depth_grid.hpp"
-#include "depthgrid/grid/map_calibration.hpp"
+#include "depthgrid/grid/map/map_calibration.hpp"
 
 namespace depthgrid::grid {
 

@@ -13,7 +13,7 @@ endif()
 
 run(dpkg-deb --contents "${packages}")
 foreach(file IN ITEMS
-    "/usr/bin/depthgrid\n" "/libdepthgrid_core\\." "/libdepthgrid_grid\\." "/libdepthgrid_input\\."
+    "/usr/bin/depthgrid\n" "/libdepthgrid_core\\." "/libdepthgrid_grid\\." "/libdepthgrid_files\\."
     "/usr/include/depthgrid/core/camera\\.hpp\n" "/usr/include/depthgrid/grid/evaluation\\.hpp\n"
     "/cmake/depthgrid/depthgridConfig\\.cmake\n")
   require_match("${output}" "${file}" "contents of the package")

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "depthgrid/search/primitive.hpp"
-#include "depthgrid/search/settings.hpp"
+#include "depthgrid/views/settings.hpp"
 #include "reference/random_problem.hpp"
 #include "reference/reference.hpp"
 

@@ -1,5 +1,5 @@
 // The demo's cell cut by planes: what counts as free must be visible along a straight line.
-#include "depthgrid/report/free_space_slice.hpp"
+#include "report/free_space_slice.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tables for Markdown.
-#include "depthgrid/report/markdown_table.hpp"
+#include "report/markdown_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "depthgrid/report/canvas.hpp"
+#include "report/canvas.hpp"
 
 namespace depthgrid::report {
 namespace {

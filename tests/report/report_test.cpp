@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/report/canvas.hpp"
-#include "depthgrid/report/depth_picture.hpp"
-#include "depthgrid/report/plot.hpp"
+#include "report/canvas.hpp"
+#include "report/depth_picture.hpp"
+#include "report/plot.hpp"
 
 namespace depthgrid::report {
 namespace {

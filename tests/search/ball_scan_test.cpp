@@ -14,7 +14,7 @@
 
 #include "depthgrid/core/pixel_frustum.hpp"
 #include "depthgrid/search/ball_test.hpp"
-#include "depthgrid/search/view_store.hpp"
+#include "depthgrid/views/view_store.hpp"
 #include "reference/random_problem.hpp"
 #include "support/random_run.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "depthgrid/search/search.hpp"
-#include "depthgrid/search/view_store.hpp"
+#include "depthgrid/views/view_store.hpp"
 #include "reference/random_problem.hpp"
 #include "reference/reference.hpp"
 #include "support/random_run.hpp"

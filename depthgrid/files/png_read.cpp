@@ -1,0 +1,180 @@
+#include <png.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/files/png.hpp"
+
+namespace depthgrid::input {
+namespace {
+
+constexpr std::size_t kSignatureBytes = 8;
+
+/// libpng reports errors by longjmp. Functions that call setjmp below therefore hold only trivial objects, and all
+/// that must be released lives here, outside of their reach.
+struct Reader {
+  std::FILE* stream = nullptr;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::array<char, 160> message{};
+
+  Reader() = default;
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() {
+    if (png != nullptr) {
+      png_destroy_read_struct(&png, &info, nullptr);
+    }
+    if (stream != nullptr) {
+      static_cast<void>(std::fclose(stream));
+    }
+  }
+};
+
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+  auto* reader = static_cast<Reader*>(png_get_error_ptr(png));
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): bounded, and it ends the text
+  static_cast<void>(std::snprintf(reader->message.data(), reader->message.size(), "%s", message));
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp /*png*/, png_const_charp /*message*/) {}  // a library does not print
+
+void read_bytes(png_structp png, png_bytep bytes, std::size_t count) {
+  auto* reader = static_cast<Reader*>(png_get_io_ptr(png));
+  if (std::fread(bytes, 1, count, reader->stream) != count) {
+    png_error(png, "the file ends too early (truncated)");
+  }
+}
+
+bool read_header(Reader& reader) noexcept {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) {  // NOLINT(cert-err52-cpp): libpng's own way of reporting errors
+    return false;
+  }
+  png_set_read_fn(reader.png, &reader, read_bytes);
+  png_set_sig_bytes(reader.png, kSignatureBytes);
+  // Sizes are checked below, with a message of our own; libpng's limit would hide the value.
+  png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+  png_read_info(reader.png, reader.info);
+  return true;
+}
+
+bool read_pixels(Reader& reader, std::uint16_t* pixels, std::size_t width, std::size_t height) noexcept {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) {  // NOLINT(cert-err52-cpp): libpng's own way of reporting errors
+    return false;
+  }
+  if constexpr (std::endian::native == std::endian::little) {
+    png_set_swap(reader.png);
+  }
+  const int passes = png_set_interlace_handling(reader.png);
+  png_start_read_image(reader.png);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t row = 0; row < height; ++row) {
+      png_read_row(reader.png, reinterpret_cast<png_bytep>(pixels + row * width), nullptr);
+    }
+  }
+  png_read_end(reader.png, nullptr);
+  return true;
+}
+
+std::string colour_name(int type) {
+  switch (type) {
+    case PNG_COLOR_TYPE_GRAY:
+      return "gray";
+    case PNG_COLOR_TYPE_GRAY_ALPHA:
+      return "gray with alpha";
+    case PNG_COLOR_TYPE_PALETTE:
+      return "palette";
+    case PNG_COLOR_TYPE_RGB:
+      return "RGB";
+    case PNG_COLOR_TYPE_RGB_ALPHA:
+      return "RGB with alpha";
+    default:
+      return "unknown";
+  }
+}
+
+void open(Reader& reader, const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    fail(file.string(), ": is a folder, needs to be a 16-bit grayscale PNG file");
+  }
+  reader.stream = std::fopen(file.c_str(), "rb");
+  if (reader.stream == nullptr) {
+    fail(file.string(), ": cannot be opened: ", std::generic_category().message(errno));
+  }
+  std::array<png_byte, kSignatureBytes> signature{};
+  const std::size_t count = std::fread(signature.data(), 1, signature.size(), reader.stream);
+  if (count == 0) {
+    fail(file.string(), ": is empty (0 bytes), needs to be a 16-bit grayscale PNG file");
+  }
+  if (png_sig_cmp(signature.data(), 0, count) != 0) {
+    fail(file.string(), ": is no PNG file: its first bytes are not PNG's signature");
+  }
+  if (count < kSignatureBytes) {
+    fail(file.string(), ": broken PNG: the file ends too early (truncated)");
+  }
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
+  reader.info = reader.png != nullptr ? png_create_info_struct(reader.png) : nullptr;
+  if (reader.info == nullptr) {
+    fail(file.string(), ": cannot be read: libpng could not be started (out of memory?)");
+  }
+}
+
+/// Deflate packs at most 1032 bytes into one, so that a header alone cannot make us allocate an image.
+void check_plausible(const std::filesystem::path& file, std::uint64_t image_bytes, png_uint_32 width,
+                     png_uint_32 height) {
+  constexpr std::uint64_t kLargestRatio = 1032;
+  std::error_code error;
+  const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
+  if (!error && image_bytes / kLargestRatio > file_bytes) {
+    fail(file.string(), ": broken PNG: ", file_bytes, " bytes cannot hold the ", width, " x ", height,
+         " pixels that its header promises (truncated)");
+  }
+}
+
+}  // namespace
+
+void read_png16(const std::filesystem::path& file, Gray16Image& image) {
+  Reader reader;
+  open(reader, file);
+  if (!read_header(reader)) {
+    fail(file.string(), ": broken PNG: ", reader.message.data());
+  }
+  const png_uint_32 width = png_get_image_width(reader.png, reader.info);
+  const png_uint_32 height = png_get_image_height(reader.png, reader.info);
+  const int bits = png_get_bit_depth(reader.png, reader.info);
+  const int colour = png_get_color_type(reader.png, reader.info);
+  if (colour != PNG_COLOR_TYPE_GRAY || bits != 16) {
+    fail(file.string(), ": is a ", bits, "-bit ", colour_name(colour), " PNG, depth images need to be 16-bit gray");
+  }
+  if (width > png_uint_32{kLargestImageSide} || height > png_uint_32{kLargestImageSide}) {
+    fail(file.string(), ": is ", width, " x ", height, " pixels, a side must be at most ", kLargestImageSide);
+  }
+  const std::uint64_t count = std::uint64_t{width} * height;
+  check_plausible(file, count * sizeof(std::uint16_t), width, height);
+  image.pixels.resize(count);
+  image.width_px = static_cast<int>(width);
+  image.height_px = static_cast<int>(height);
+  if (!read_pixels(reader, image.pixels.data(), width, height)) {
+    fail(file.string(), ": broken PNG: ", reader.message.data());
+  }
+}
+
+Gray16Image read_png16(const std::filesystem::path& file) {
+  Gray16Image image;
+  read_png16(file, image);
+  return image;
+}
+
+}  // namespace depthgrid::input

@@ -1,0 +1,108 @@
+// The minimum filter in single precision. Included once for each instruction set. Internal.
+#if defined(DEPTHGRID_SEARCH_DEPTH_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_SEARCH_DEPTH_ROWS_INL
+#undef DEPTHGRID_SEARCH_DEPTH_ROWS_INL
+#else
+#define DEPTHGRID_SEARCH_DEPTH_ROWS_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "depthgrid/views/image_preparation.hpp"
+#include "depthgrid/views/reading_rows-inl.hpp"
+#include "depthgrid/views/vector_rows-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::search::HWY_NAMESPACE {
+
+/// Reduced depths of one row: D - m(D), or the robot's exit where the reading lies in the robot. `values` are codes or
+/// metres.
+template <class Reader, class D>
+HWY_INLINE void reduce_row(D d_values, const Reader& reader, const Reduction& reduction, const NewImage& image, int v,
+                           const hn::TFromD<D>* values, const PixelRange& columns, PreparationRows& rows) {
+  const Floats d;
+  const int width_px = image.depth.width_px;
+  const bool robot_here = image.robot.near_m != nullptr && !rows.columns().robot(v).empty();
+  const float* near_m = robot_here ? image.robot.near_m + image.robot.stride_px * v : nullptr;
+  const float* far_m = robot_here ? image.robot.far_m + image.robot.stride_px * v : nullptr;
+  float* reduced_m = rows.reduced_m();
+  const Reducer reduced(reduction);
+  const V pocket = hn::Set(d, image.pocket_m);
+  const V pocket_rounding = hn::Set(d, image.pocket_m > 0 ? 1.0F - 0x1p-23F : 1.0F);
+  const V largest = hn::Set(d, kLargest);
+  for_columns(columns, lanes(d), [&](int u, const auto& part) HWY_ATTR {
+    const auto value = part.load(d_values, values + u, hn::TFromD<D>{0});
+    V result = reduced(reader(value));
+    if (robot_here) {
+      const V near = part.load(d, near_m + u, 0.0F);
+      const M in_front = hn::And(hn::Gt(near, hn::Zero(d)), hn::Le(near, result));
+      if (!hn::AllFalse(d, in_front)) {
+        const V far = part.load(d, far_m + u, 0.0F);
+        const V exit = hn::Min(hn::Mul(hn::Add(far, pocket), pocket_rounding), largest);
+        const M inside = hn::And(reader.at_most(value, far), hn::Le(far, largest));
+        result = hn::IfThenElse(hn::And(in_front, inside), hn::Max(exit, far), result);
+      }
+    }
+    hn::StoreU(result, d, reduced_m + u);
+  });
+  if (columns.end == width_px) {
+    std::fill_n(reduced_m + width_px, image.reach_px, 0.0F);
+  }
+}
+
+/// Minima over the 2 w + 1 neighbours in the row.
+template <int kReach>
+HWY_INLINE void filter_row(const float* HWY_RESTRICT reduced_m, const PixelRange& columns, int reach_if_unknown,
+                           float* HWY_RESTRICT minimum_m) {
+  const Floats d;
+  const int reach_px = kReach > 0 ? kReach : reach_if_unknown;
+  for (int u = columns.begin; u < columns.end; u += lanes(d)) {
+    V smallest = hn::LoadU(d, reduced_m + u - reach_px);
+    for (int k = 1 - reach_px; k <= reach_px; ++k) {
+      smallest = hn::Min(smallest, hn::LoadU(d, reduced_m + u + k));
+    }
+    hn::StoreU(smallest, d, minimum_m + u);
+  }
+}
+
+/// g of one row from the minima of the rows around it. kReach is w, or 0 where it is not known here.
+template <int kReach>
+HWY_INLINE void filter_columns(PreparationRows& rows, const PixelRange& columns, int reach_if_unknown, int v,
+                               float* HWY_RESTRICT free_m) {
+  const Floats d;
+  const int reach_px = kReach > 0 ? kReach : reach_if_unknown;
+  std::array<const float*, 2 * (kReach > 0 ? kReach : kLargestReach) + 1> around{};
+  for (int i = 0; i <= 2 * reach_px; ++i) {
+    around[i] = rows.minimum_m(v - reach_px + i);
+  }
+  for_columns(columns, lanes(d), [&](int u, const auto& part) HWY_ATTR {
+    V smallest = hn::LoadU(d, around[0] + u);
+    for (int i = 1; i <= 2 * reach_px; ++i) {
+      smallest = hn::Min(smallest, hn::LoadU(d, around[i] + u));
+    }
+    part.store(smallest, d, free_m + u);
+  });
+}
+
+/// One row of level 0 from the windows of four rows.
+HWY_INLINE void first_level_row(PreparationRows& rows, const PixelRange& columns, int j, float* HWY_RESTRICT texels) {
+  const Floats d;
+  const float* HWY_RESTRICT row0 = rows.window_m(j);
+  const float* HWY_RESTRICT row1 = rows.window_m(j + 1);
+  const float* HWY_RESTRICT row2 = rows.window_m(j + 2);
+  const float* HWY_RESTRICT row3 = rows.window_m(j + 3);
+  for (int u = columns.begin; u < columns.end; u += lanes(d)) {
+    const V upper = hn::Min(hn::LoadU(d, row0 + u), hn::LoadU(d, row1 + u));
+    const V lower = hn::Min(hn::LoadU(d, row2 + u), hn::LoadU(d, row3 + u));
+    store_some(hn::Min(upper, lower), d, texels + u, columns.end - u);
+  }
+}
+
+}  // namespace depthgrid::search::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,187 @@
+#include "depthgrid/views/image_preparation.hpp"
+
+#include <array>
+#include <cstring>
+
+#include "depthgrid/views/pyramid_rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "depthgrid/views/image_preparation.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target: seen once for each target.
+#include <hwy/highway.h>
+
+#include "depthgrid/views/code_rows-inl.hpp"
+#include "depthgrid/views/depth_rows-inl.hpp"
+#include "depthgrid/views/reading_rows-inl.hpp"
+#include "depthgrid/views/robot_rows-inl.hpp"
+#include "depthgrid/views/vector_rows-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::search::HWY_NAMESPACE {
+
+/// The passes over one image. Rows are taken in as soon as the next ones need them. kReach is w, or 0 where it is not
+/// known here.
+template <bool kUnits, int kReach>
+class Passes {
+ public:
+  HWY_INLINE Passes(const Reading& reading, const NewImage& image, PreparationRows& rows, const PreparedImage& result)
+      : reading_(reading),
+        image_(image),
+        rows_(rows),
+        result_(result),
+        width_px_(image.depth.width_px),
+        height_px_(image.depth.height_px),
+        narrow_(kUnits && reading.ascending && image.reach_px > 0) {}
+
+  HWY_INLINE PixelRange run() {
+    rows_.columns().begin(!narrow_);
+    PixelRange island_rows;
+    int next = 0;
+    int searched = 0;
+    // Level 0 lags behind by three rows, whose texels cover the rows below them.
+    for (int v = 0; v < height_px_ + 3; v += 2) {
+      const int end = std::min(v + 2 + image_.reach_px, height_px_);
+      for (; image_.robot.near_m != nullptr && searched < std::min(end + rows_.columns().lookahead(), height_px_);
+           ++searched) {
+        rows_.columns().add_robot(searched, robot_columns(image_, searched));
+      }
+      take(next, end);
+      next = end;
+      if (v < height_px_) {
+        island_rows = joined(island_rows, free_rows(v));
+      }
+      first_level(v - 3);
+    }
+    return island_rows;
+  }
+
+ private:
+  /// Rows [begin, end) of the image. One pass over all of them after the other: a pass that reads what the one before
+  /// has just written, but at other columns, waits until it has reached the cache.
+  HWY_INLINE void take(int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const char* source = static_cast<const char*>(image_.depth.data) + image_.depth.stride_bytes * v;
+      if constexpr (kUnits) {
+        decode_row(reading_, reinterpret_cast<const std::uint16_t*>(source), 2 * image_.depth.stride_bytes, width_px_,
+                   pixel_row(static_cast<std::uint16_t*>(result_.kept), width_px_, v), rows_.codes(v));
+      } else {
+        std::memcpy(pixel_row(static_cast<float*>(result_.kept), width_px_, v), source,
+                    static_cast<std::size_t>(width_px_) * sizeof(float));
+      }
+    }
+    for (int v = begin; v < end && narrow_; ++v) {
+      narrow_minimum<kReach>(rows_.codes(v), width_px_, image_.reach_px, rows_.narrow_minimum(v));
+    }
+    for (int v = begin; v < end && narrow_; ++v) {
+      narrow_window(rows_.narrow_minimum(v), width_px_, rows_.narrow_window(v));
+    }
+    for (int v = begin; v < end; ++v) {
+      const PixelRange reduced = rows_.columns().reduced(v);
+      if (reduced.empty()) {
+        continue;
+      }
+      if constexpr (kUnits) {
+        reduce_row(FewUnits(), UnitReader<true>(reading_), reading_.of_units, image_, v, rows_.codes(v), reduced,
+                   rows_);
+      } else {
+        reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
+                   pixel_row(static_cast<const float*>(result_.kept), width_px_, v), reduced, rows_);
+      }
+      filter_row<kReach>(rows_.reduced_m(), rows_.columns().filtered(v), image_.reach_px, rows_.minimum_m(v));
+    }
+  }
+
+  /// The rows v and v + 1 of a result, where they exist, from minima of codes; what is done in single precision is left
+  /// out if both rows have it.
+  template <int kCount, class RowOf, class FloatColumnsOf>
+  HWY_INLINE void from_codes(const RowOf& row_of, int v, int reach_below, float* pixels,
+                             const FloatColumnsOf& in_floats) {
+    const auto exists = [&](int row) { return row >= 0 && row < height_px_; };
+    const auto floats = [&](int row) { return exists(row) ? in_floats(row) : PixelRange{0, width_px_}; };
+    const auto result = [&](int row) { return exists(row) ? pixel_row(pixels, width_px_, row) : nullptr; };
+    const int count = 2 * image_.reach_px + 1 + reach_below;
+    std::array<const std::uint16_t*, (kCount > 0 ? kCount : 2 * kLargestReach + 4) + 1> rows{};
+    for (int i = 0; i <= count; ++i) {
+      rows[i] = row_of(v - image_.reach_px + i);
+    }
+    const auto convert = [&](const PixelRange& columns) HWY_ATTR {
+      reading_.has_beyond
+          ? narrow_columns<kCount, true>(reading_, rows.data(), count, columns, result(v), result(v + 1))
+          : narrow_columns<kCount, false>(reading_, rows.data(), count, columns, result(v), result(v + 1));
+    };
+    const PixelRange floats_only = common(floats(v), floats(v + 1));
+    convert({0, floats_only.empty() ? width_px_ : floats_only.begin});
+    if (!floats_only.empty()) {
+      convert({floats_only.end, width_px_});
+    }
+  }
+
+  /// The rows v and v + 1; returns those with islands.
+  HWY_INLINE PixelRange free_rows(int v) {
+    PixelRange island_rows;
+    if (narrow_) {
+      from_codes<kReach == 0 ? 0 : 2 * kReach + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
+                                                   result_.free_m, [&](int row) { return rows_.columns().free(row); });
+    }
+    for (int row = v; row < std::min(v + 2, height_px_); ++row) {
+      float* free_m = pixel_row(result_.free_m, width_px_, row);
+      filter_columns<kReach>(rows_, rows_.columns().free(row), image_.reach_px, row, free_m);
+      const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns().robot(row) : PixelRange{};
+      if (!robot.empty() && join_robot(image_, row, robot, result_, free_m)) {
+        island_rows = joined(island_rows, {row, row + 1});
+      }
+      window_row(Smaller(), free_m, width_px_, rows_.columns().windows(row), rows_.window_m(row));
+    }
+    return island_rows;
+  }
+
+  /// The rows j and j + 1 of level 0, and what can be made of them.
+  HWY_INLINE void first_level(int j) {
+    float* level = result_.minima_m + result_.levels[0].offset;
+    if (narrow_) {
+      from_codes<kReach == 0 ? 0 : 2 * kReach + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
+                                                   [&](int row) { return rows_.columns().texels(row); });
+    }
+    for (int row = std::max(j, 0); row < std::min(j + 2, height_px_); ++row) {
+      first_level_row(rows_, rows_.columns().texels(row), row, pixel_row(level, width_px_, row));
+      minimum_rows_above(result_.levels, row, rows_.scratch(), result_.minima_m);
+    }
+  }
+
+  const Reading& reading_;
+  const NewImage& image_;
+  PreparationRows& rows_;
+  const PreparedImage& result_;
+  int width_px_;
+  int height_px_;
+  bool narrow_;  ///< filter codes, and single precision only where the robot asks for it
+};
+
+template <bool kUnits>
+HWY_INLINE PixelRange prepare_as(const Reading& reading, const NewImage& image, PreparationRows& rows,
+                                 const PreparedImage& result) {
+  return image.reach_px == 1 ? Passes<kUnits, 1>(reading, image, rows, result).run()
+                             : Passes<kUnits, 0>(reading, image, rows, result).run();
+}
+
+PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows, const PreparedImage& result) {
+  return image.depth.format == DepthFormat::uint16_units ? prepare_as<true>(reading, image, rows, result)
+                                                         : prepare_as<false>(reading, image, rows, result);
+}
+
+}  // namespace depthgrid::search::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace depthgrid::search {
+
+HWY_EXPORT(prepare);
+
+PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows,
+                   const PreparedImage& result) noexcept {
+  return HWY_DYNAMIC_DISPATCH(prepare)(reading, image, rows, result);
+}
+
+}  // namespace depthgrid::search
+#endif

@@ -1,0 +1,94 @@
+// The newest image of every camera, shared between the threads that deliver images and those that ask.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "depthgrid/core/frame.hpp"
+#include "depthgrid/core/rig.hpp"
+#include "depthgrid/views/settings.hpp"
+#include "depthgrid/views/view.hpp"
+
+namespace depthgrid::search {
+
+class Snapshot;
+
+enum class UpdateResult : std::uint8_t {
+  taken,     ///< the frame is the camera's newest
+  unusable,  ///< taken as "no measurement anywhere"; why_unusable() says why
+  dropped,   ///< held snapshots occupy every buffer of this camera: the frame before stays the newest
+};
+
+/// Holds a few prepared images a camera. Neither update() nor snapshot() locks, allocates or throws; both are
+/// lock-free. update(): one thread at a time for each camera; different cameras may update at the same time, and any
+/// number of threads may take snapshots meanwhile.
+class ViewStore {
+ public:
+  /// `held_snapshots`: how many different snapshots may be held at once before a camera's next frame is dropped (1-13);
+  /// each costs one prepared image a camera. Images must be free of lens distortion. Throws Error when rig or settings
+  /// are invalid.
+  ViewStore(const Rig& rig, const Settings& settings, int held_snapshots = 2);
+  ~ViewStore();
+  ViewStore(const ViewStore&) = delete;
+  ViewStore& operator=(const ViewStore&) = delete;
+
+  /// Takes a frame of one camera. With `T_world_camera` the camera has moved; without it stands where the rig says.
+  /// `camera` beyond the rig is `unusable`.
+  [[nodiscard]] UpdateResult update(std::size_t camera, const Frame& frame) noexcept;
+  [[nodiscard]] UpdateResult update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept;
+  /// Why update() answers `unusable`, as a text that lives for ever: no data, wrong size or scale, rows that overlap,
+  /// half a robot view, a pose that is none, no such camera. Null: the frame is usable. Any thread, at any time.
+  [[nodiscard]] const char* why_unusable(std::size_t camera, const Frame& frame) const noexcept;
+  [[nodiscard]] const char* why_unusable(std::size_t camera, const Frame& frame,
+                                         const Pose& T_world_camera) const noexcept;
+
+  /// The newest image of every camera, all published at one instant. Cameras without a frame so far free nothing.
+  /// t_ref is the newest exposure. The store must outlive the snapshot.
+  [[nodiscard]] Snapshot snapshot() const noexcept;
+
+  [[nodiscard]] const Rig& rig() const noexcept;
+  [[nodiscard]] const Settings& settings() const noexcept;
+
+ private:
+  friend class Snapshot;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A consistent set of views. Holds them until it is destroyed. Movable; queries on one snapshot from many threads are
+/// allowed.
+class Snapshot {
+ public:
+  Snapshot(Snapshot&& other) noexcept;
+  Snapshot& operator=(Snapshot&& other) noexcept;
+  Snapshot(const Snapshot&) = delete;
+  Snapshot& operator=(const Snapshot&) = delete;
+  ~Snapshot();
+
+  [[nodiscard]] std::size_t camera_count() const noexcept;
+  [[nodiscard]] const View& view(std::size_t camera) const noexcept;
+  /// e_k of this snapshot; time_m = v_max (|t_k - t_ref| + half exposure + time uncertainty).
+  [[nodiscard]] const PoseMargin& pose_margin(std::size_t camera) const noexcept;
+  [[nodiscard]] const RigCamera& camera(std::size_t camera) const noexcept;
+  /// Where the camera was at its newest frame, usable or not; where the rig says while there is none.
+  [[nodiscard]] const Pose& T_world_camera(std::size_t camera) const noexcept;
+  [[nodiscard]] const Settings& settings() const noexcept;
+  /// Newest exposure of all cameras present; NaN when there is none.
+  [[nodiscard]] double reference_time_s() const noexcept { return reference_time_s_; }
+  /// A camera is missing, has no finite time, or is older than the newest by more than max_frame_age_s.
+  [[nodiscard]] bool stale() const noexcept { return stale_; }
+
+ private:
+  friend class ViewStore;
+  explicit Snapshot(const ViewStore::State& state) noexcept;
+  void release() noexcept;
+
+  const ViewStore::State* state_ = nullptr;
+  std::uint64_t slots_ = 0;
+  std::array<PoseMargin, kMostCameras> pose_margins_{};
+  double reference_time_s_ = 0;
+  bool stale_ = false;
+};
+
+}  // namespace depthgrid::search

@@ -1,0 +1,28 @@
+// Many random person motions, each with every method: contacts, distances, task time.
+#pragma once
+
+#include "lab/experiments/campaign/campaign_state.hpp"
+#include "lab/experiments/experiment.hpp"
+
+namespace depthgrid::experiments {
+
+struct CampaignPlan {
+  int motions = 200;
+  double duration_s = 10;  ///< of each
+  AvoidanceSettings common;
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+/// What must agree for runs to belong together.
+[[nodiscard]] nlohmann::ordered_json settings_of(const CampaignPlan& plan, bool with_recordings);
+
+/// Runs what is missing in `state`, and saves it to `file` (empty: nowhere) after every motion. Throws Error.
+void run_motions(const CampaignPlan& plan, const std::filesystem::path& file, CampaignState& state,
+                 const Progress& progress);
+
+/// The experiment. --frames is the number of motions. OUT/state.json holds what was done, so that a run that was cut
+/// off goes on where it stopped.
+void run_campaign(const Options& options, ExperimentReport& report);
+
+}  // namespace depthgrid::experiments

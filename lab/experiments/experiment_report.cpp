@@ -1,0 +1,118 @@
+#include "lab/experiments/experiment_report.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <ctime>
+#include <system_error>
+
+#include "depthgrid/core/error.hpp"
+#include "lab/experiments/text_output.hpp"
+#include "report/machine.hpp"
+
+namespace depthgrid::experiments {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string now_utc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm date{};
+  gmtime_r(&now, &date);
+  std::array<char, 32> text{};
+  (void)std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &date);
+  return text.data();
+}
+
+/// Throws Error unless files can be created in it once it is there.
+void check_folder(const fs::path& folder) {
+  std::error_code error;
+  if (folder.empty()) {
+    fail("the report needs a folder: give --out DIR");
+  }
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    fail("cannot write the report to ", folder.string(), ": it is a file; name a folder");
+  }
+  fs::path place = folder;
+  if (!fs::is_directory(folder, error)) {
+    place = fs::absolute(folder).lexically_normal();
+    place = (place.has_filename() ? place : place.parent_path()).parent_path();
+    if (fs::exists(place, error) && !fs::is_directory(place, error)) {
+      fail("cannot write the report to ", folder.string(), ": ", place.string(), " is a file");
+    }
+    if (!fs::is_directory(place, error)) {
+      fail("cannot write the report to ", folder.string(), ": there is no folder ", place.string(),
+           "; create it first");
+    }
+  }
+  if (::access(place.c_str(), W_OK | X_OK) != 0) {
+    fail("cannot write the report to ", folder.string(), ": ", std::generic_category().message(errno));
+  }
+  for (const char* name : {"report.md", "figures.json"}) {
+    if (fs::is_directory(folder / name, error)) {
+      fail("cannot write the report to ", folder.string(), ": ", (folder / name).string(), " is a folder");
+    }
+  }
+}
+
+}  // namespace
+
+ExperimentReport::ExperimentReport(const Experiment& experiment, const Options& options) : folder_(options.out) {
+  check_folder(folder_);
+  about_["experiment"] = experiment.name;
+  about_["program"] = "depthgrid " DEPTHGRID_VERSION;
+  about_["command"] = options.command_line;
+  about_["seed"] = options.seed;
+  about_["quick"] = options.quick;
+  about_["started"] = now_utc();
+  about_["machine"] = report::machine_line(experiment.cores_used);
+  markdown_ = "# " + std::string(experiment.name) + "\n";
+  if (!options.command_line.empty()) {
+    paragraph("`" + options.command_line + "`, " + now_utc() + (options.quick ? ", a quick run." : "."));
+  }
+  paragraph("Machine: " + report::machine_line(experiment.cores_used) + ".");
+}
+
+void ExperimentReport::paragraph(std::string_view markdown) { markdown_.append("\n").append(markdown).append("\n"); }
+
+void ExperimentReport::headline(std::string_view sentence) {
+  headlines_.emplace_back(sentence);
+  paragraph(sentence);
+}
+
+void ExperimentReport::picture(std::string file, report::Canvas canvas, std::string_view caption) {
+  paragraph("![" + file + "](" + file + ")");
+  paragraph("*" + std::string(caption) + "*");
+  pictures_.emplace_back(std::move(file), std::move(canvas));
+}
+
+void ExperimentReport::write() const {
+  std::error_code error;
+  if (!fs::is_directory(folder_, error) && !fs::create_directory(folder_, error)) {
+    fail("cannot create the folder ", folder_.string(), ": ", error.message());
+  }
+  for (const auto& [file, canvas] : pictures_) {
+    canvas.save_png(folder_ / file);
+  }
+  nlohmann::ordered_json all;
+  all["about"] = about_;
+  all["figures"] = figures_;
+  write_text(folder_ / "figures.json", all.dump(2) + "\n");
+  write_text(folder_ / "report.md", markdown_);
+}
+
+std::string ExperimentReport::text() const {
+  std::string text;
+  for (const std::string& sentence : headlines_) {
+    text += sentence + "\n";
+  }
+  text += "Report: " + (folder_ / "report.md").string() + ", figures.json";
+  for (const auto& [file, canvas] : pictures_) {
+    text += ", " + file;
+  }
+  return text + "\n";
+}
+
+}  // namespace depthgrid::experiments

@@ -1,0 +1,120 @@
+#include "lab/experiments/loop/avoidance_method.hpp"
+
+#include <numbers>
+
+#include "depthgrid/avoidance/grid_distances.hpp"
+#include "depthgrid/simulation/arrangement.hpp"
+
+namespace depthgrid::experiments {
+
+std::string_view title(Method method) noexcept {
+  constexpr std::array<std::string_view, 5> kTitles{"no avoidance", "letter, 1 camera", "letter, 2 cameras",
+                                                    "search, 2 cameras", "search, pockets ignored"};
+  return kTitles.at(static_cast<std::size_t>(method));
+}
+
+std::string_view key(Method method) noexcept {
+  constexpr std::array<std::string_view, 5> kKeys{"none", "letter_one", "letter_two", "search", "search_pockets"};
+  return kKeys.at(static_cast<std::size_t>(method));
+}
+
+int cameras_of(Method method) noexcept { return method == Method::none ? 0 : method == Method::letter_one ? 1 : 2; }
+
+control::JointVector start_rad() {
+  control::JointVector q(7);
+  q << std::numbers::pi / 2, 0.1, 0.0, -1.55, 0.0, 1.2, 0.0;
+  return q;
+}
+
+Eigen::Vector3d hexagon_centre_world(const robot::RobotModel& model) {
+  const control::JointVector q = start_rad();
+  std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
+  (void)model.link_poses({q.data(), static_cast<std::size_t>(q.size())}, Pose::Identity(), T_world_link);
+  return T_world_link[model.link_index("lwr_7_link")].translation();
+}
+
+control::JointLimits joint_limits(const robot::RobotModel& model) {
+  const auto count = static_cast<Eigen::Index>(model.joints().size());
+  control::JointLimits limits;
+  limits.lowest_rad.resize(count);
+  limits.highest_rad.resize(count);
+  limits.velocity_rad_s.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const robot::Joint& joint = model.joints()[static_cast<std::size_t>(i)];
+    limits.lowest_rad[i] = joint.lower;
+    limits.highest_rad[i] = joint.upper;
+    limits.velocity_rad_s[i] = joint.max_speed;
+  }
+  limits.acceleration_rad_s2 = control::JointVector::Constant(count, 300 * std::numbers::pi / 180);
+  return limits;
+}
+
+search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings, double ignored_pocket_m) {
+  const simulation::Arrangement letter = simulation::letter_arrangement();
+  search::Settings result;
+  result.space = search::BoxSpace{letter.workspace_low_world, letter.workspace_high_world};
+  result.policies.unobserved = search::Policy::obstacle;
+  result.policies.outside = search::Policy::obstacle;
+  result.policies.robot_pockets = ignored_pocket_m > 0 ? search::Policy::ignored : search::Policy::obstacle;
+  result.policies.ignored_pocket_m = ignored_pocket_m;
+  result.margins = camera_margins(rig);
+  result.v_max_m_s = settings.v_max_m_s;
+  result.resolution_m = settings.resolution_m;
+  // An image is at most this old when it is asked: what is beyond rho then still is.
+  result.rho_m =
+      settings.rho_m + settings.v_max_m_s * (settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s);
+  return result;
+}
+
+robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings) {
+  robot::ExposureSettings result;
+  result.removal.padding_m = settings.removal_padding_m;
+  return result;
+}
+
+std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig& rig, const AvoidanceSettings& settings,
+                                                       std::size_t parts) {
+  if (method == Method::none) {
+    return std::make_unique<avoidance::NoDistances>();
+  }
+  if (is_search(method)) {
+    const double pocket_m = method == Method::search_pockets ? settings.ignored_pocket_m : 0;
+    return std::make_unique<avoidance::SearchDistances>(rig, search_settings(rig, settings, pocket_m), parts);
+  }
+  const simulation::Arrangement letter = simulation::letter_arrangement();
+  avoidance::GridDistancesSettings grid;
+  grid.cells = {letter.d_min_m, letter.cell_m, 0, letter.cells};
+  grid.evaluation.variant = grid::Variant::letter;
+  grid.evaluation.collect = grid::Collect::hybrid;
+  grid.evaluation.rho_m = settings.rho_m;
+  grid.robot_pixels = method == Method::letter_one ? avoidance::RobotPixels::removed : avoidance::RobotPixels::case_iv;
+  return std::make_unique<avoidance::GridDistances>(rig, grid);
+}
+
+avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model, const AvoidanceSettings& settings,
+                                      double hexagon_radius_m) {
+  avoidance::LoopSettings result;
+  result.evaluate_every = settings.evaluate_every;
+  control::ControllerSettings& controller = result.controller;
+  controller.limits = joint_limits(model);
+  controller.period_s = settings.period_s;
+  controller.posture_rad = start_rad();
+  controller.repulsion.rho_m = settings.rho_m;
+  controller.repulsion.v_max_m_s = settings.repulsion_m_s;
+  controller.body.rho_m = settings.rho_m;
+  result.task.vertices_world =
+      control::vertical_hexagon(hexagon_centre_world(model), hexagon_radius_m, Eigen::Vector3d::UnitY());
+  if (is_search(method)) {
+    controller.body.law = control::BodyLaw::approach_row;
+    controller.body.gain_per_s = settings.approach_gain_per_s;
+    controller.body.stop_m = settings.approach_stop_m;
+    result.parts = avoidance::moving_capsules(model);
+    result.end_effector_limits = true;
+  } else {
+    controller.repulsion.form = control::RepulsionForm::letter;
+    result.parts = avoidance::nine_control_points(model);
+  }
+  return result;
+}
+
+}  // namespace depthgrid::experiments

@@ -1,0 +1,76 @@
+// The methods that the avoidance experiments compare: where distances come from, and what the controller makes of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "depthgrid/avoidance/avoidance_loop.hpp"
+#include "depthgrid/avoidance/search_distances.hpp"
+#include "depthgrid/core/rig.hpp"
+#include "depthgrid/robot/robot_at_exposure.hpp"
+#include "lab/experiments/loop/avoidance_motion.hpp"
+
+namespace depthgrid::experiments {
+
+enum class Method : std::uint8_t {
+  none,            ///< no avoidance
+  letter_one,      ///< the letter's evaluation with the principal camera alone, robot pixels taken out of the image
+  letter_two,      ///< the letter's evaluation with both cameras
+  search,          ///< the sound search with both cameras: all that nobody sees is an obstacle
+  search_pockets,  ///< the same, with the declared policy that ignores pockets right behind the robot
+};
+inline constexpr std::array kMethods{Method::none, Method::letter_one, Method::letter_two, Method::search,
+                                     Method::search_pockets};
+[[nodiscard]] constexpr bool is_search(Method method) noexcept {
+  return method == Method::search || method == Method::search_pockets;
+}
+
+/// As in tables ("letter, 2 cameras"), and in JSON ("letter_two").
+[[nodiscard]] std::string_view title(Method method) noexcept;
+[[nodiscard]] std::string_view key(Method method) noexcept;
+/// 0 for `none`.
+[[nodiscard]] int cameras_of(Method method) noexcept;
+
+inline constexpr double kFrameRate_hz = 30;  ///< of every camera
+
+/// What all runs of one comparison share.
+struct AvoidanceSettings {
+  int width_px = 160;
+  std::string_view sensor = "ideal";
+  double period_s = 0.002;
+  double frame_latency_s = 0.02;   ///< from the exposure until the loop has the image
+  double rho_m = 0.4;              ///< of the control laws, and of the letter's evaluation
+  double repulsion_m_s = 1.5;      ///< V_max
+  double v_max_m_s = 2.0;          ///< of obstacles, for the search
+  double ignored_pocket_m = 0.10;  ///< of Method::search_pockets
+  double resolution_m = 0.01;      ///< of the search
+  double approach_gain_per_s = 2.0;
+  double approach_stop_m = 0.03;
+  double removal_padding_m = 0.01;
+  int evaluate_every = 2;  ///< periods between two evaluations, of every method
+};
+
+/// Joints at the beginning, the flange before the base and above the floor; hexagon in the plane y = const around it.
+[[nodiscard]] control::JointVector start_rad();
+[[nodiscard]] Eigen::Vector3d hexagon_centre_world(const robot::RobotModel& model);
+
+/// Of the model's ranges and speeds; 300 degrees / s^2.
+[[nodiscard]] control::JointLimits joint_limits(const robot::RobotModel& model);
+
+[[nodiscard]] search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings,
+                                               double ignored_pocket_m = 0);
+
+[[nodiscard]] robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings);
+
+[[nodiscard]] std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig& rig,
+                                                                     const AvoidanceSettings& settings,
+                                                                     std::size_t parts);
+
+[[nodiscard]] avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
+                                                    const AvoidanceSettings& settings,
+                                                    double hexagon_radius_m = kHexagonRadius_m);
+
+}  // namespace depthgrid::experiments

@@ -1,0 +1,147 @@
+// The search where it is slowest: noise, everything hidden, points in obstacles and on cameras; with and without a
+// budget. Writes a Markdown table to standard output; docs/worst-cases.md is what it printed.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "depthgrid/search/search.hpp"
+#include "lab/machine.hpp"
+#include "lab/workload/workload.hpp"
+
+namespace depthgrid::bench {
+namespace {
+
+constexpr int kRepetitions = 3;
+constexpr std::size_t kPixels = 640UL * 480UL;
+
+using Clock = std::chrono::steady_clock;
+
+struct Scene {
+  std::string name;
+  /// Depth in millimetres of a pixel of camera k.
+  std::function<std::uint16_t(std::mt19937&, int k, int u, int v)> depth_mm;
+};
+
+struct Case {
+  double median_ms = 0, most_ms = 0;
+  std::int64_t cubes = 0;
+  int unfinished = 0;
+  double mean_m = 0;
+};
+
+Case run(const search::ViewStore& store, const std::vector<search::Primitive>& points, const search::Budget& budget) {
+  search::Search searcher;
+  std::vector<search::Answer> answers(points.size());
+  const search::Snapshot snapshot = store.snapshot();
+  std::vector<double> times_ms;
+  Case result;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    search::Count count;
+    const auto start = Clock::now();
+    searcher.distances(snapshot, points, answers, budget, &count);
+    times_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    result.cubes = count.nodes;
+  }
+  std::sort(times_ms.begin(), times_ms.end());
+  result.median_ms = times_ms[times_ms.size() / 2];
+  result.most_ms = times_ms.back();
+  for (const search::Answer& answer : answers) {
+    result.unfinished += answer.nearest.budget ? 1 : 0;
+    result.mean_m += answer.nearest.distance_m / static_cast<double>(answers.size());
+  }
+  return result;
+}
+
+search::Settings settings_for(int cameras, double reach_m) {
+  search::Settings settings;
+  settings.space = search::BoxSpace{{-1.5, -1.5, 0.0}, {1.5, 1.5, 2.0}};
+  settings.policies = {search::Policy::obstacle, search::Policy::ignored, search::Policy::obstacle, 0};
+  settings.margins.resize(static_cast<std::size_t>(cameras));
+  for (auto& margins : settings.margins) {
+    margins.translation_m = reach_m;
+  }
+  settings.v_max_m_s = 0;
+  return settings;
+}
+
+}  // namespace
+
+int write_table() {
+  const auto checker = [](std::mt19937&, int, int u, int v) -> std::uint16_t {
+    return (u / 2 + v / 2) % 2 == 0 ? 3500 : 1500;
+  };
+  const std::vector<Scene> scenes{
+      {"uniform noise, 0.5 to 4.5 m",
+       [](std::mt19937& g, int, int, int) { return static_cast<std::uint16_t>(500 + g() % 4000); }},
+      {"4 m, every 200th pixel at random",
+       [](std::mt19937& g, int, int, int) {
+         return static_cast<std::uint16_t>(g() % 200 == 0 ? 500 + g() % 3500 : 4000);
+       }},
+      {"2 x 2 pixel checkerboard, 1.5 and 3.5 m", checker},
+      {"nothing measured", [](std::mt19937&, int, int, int) { return std::uint16_t{0}; }},
+      {"a wall 0.4 m before each camera", [](std::mt19937&, int, int, int) { return std::uint16_t{400}; }},
+      {"nothing within 4 m", [](std::mt19937&, int, int, int) { return std::uint16_t{4000}; }},
+  };
+  std::printf(
+      "| scene | points | cameras | e | cubes | median, ms | longest, ms | with 2,000 cubes: ms | unfinished | mean D, "
+      "of that bound |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const int cameras : {2, 8}) {
+    const Rig rig = workload_rig(cameras);
+    std::vector<search::Primitive> on_arm;
+    for (const Eigen::Vector3d& p : workload_points(0)) {
+      on_arm.push_back(search::point(p));
+    }
+    std::vector<search::Primitive> on_camera(9, search::point(rig.cameras[0].T_world_camera.translation()));
+    for (const Scene& scene : scenes) {
+      std::mt19937 generator(7);
+      std::vector<std::vector<std::uint16_t>> images(static_cast<std::size_t>(cameras));
+      for (const double reach_m : {0.0, 0.02}) {
+        search::Settings settings = settings_for(cameras, reach_m);
+        for (const bool at_camera : {false, true}) {
+          if (at_camera && scene.name != scenes.back().name) {
+            continue;  // in the blind zone all scenes are the same
+          }
+          if (at_camera) {
+            settings.space = search::BoxSpace{{-4, -4, -1}, {4, 4, 4}};
+          }
+          search::ViewStore store(rig, settings);
+          for (int k = 0; k < cameras; ++k) {
+            auto& image = images[static_cast<std::size_t>(k)];
+            if (image.empty()) {
+              image.resize(kPixels);
+              for (std::size_t i = 0; i < kPixels; ++i) {
+                image[i] = scene.depth_mm(generator, k, static_cast<int>(i % 640), static_cast<int>(i / 640));
+              }
+            }
+            Frame frame;
+            frame.depth = depth_view(std::span<const std::uint16_t>(image), 640, 480, 0.001);
+            static_cast<void>(store.update(static_cast<std::size_t>(k), frame));
+          }
+          const auto& points = at_camera ? on_camera : on_arm;
+          search::Budget free_budget;
+          free_budget.time_s = 1;  // so that the table ends
+          const Case whole = run(store, points, free_budget);
+          search::Budget tight;
+          tight.nodes = 2000;
+          const Case cut = run(store, points, tight);
+          std::printf("| %s | %s | %d | %.0f cm | %lld%s | %.2f | %.2f | %.2f | %d of 9 | %.3f of %.3f m |\n",
+                      scene.name.c_str(), at_camera ? "on a camera" : "on the arm", cameras, 100 * reach_m,
+                      static_cast<long long>(whole.cubes), whole.unfinished > 0 ? " (stopped after 1 s)" : "",
+                      whole.median_ms, whole.most_ms, cut.most_ms, cut.unfinished, cut.mean_m, whole.mean_m);
+          std::fflush(stdout);
+        }
+      }
+    }
+  }
+  std::printf("\nOn: %s\n", machine_line().c_str());
+  return 0;
+}
+
+}  // namespace depthgrid::bench
+
+int main() { return depthgrid::bench::write_table(); }

@@ -1,0 +1,46 @@
+#include "lab/peers/search_peer.hpp"
+
+#include <algorithm>
+
+namespace depthgrid::bench {
+
+search::Settings search_settings(const PeerSetting& setting, double resolution_m) {
+  search::Settings settings;
+  settings.space = search::BoxSpace{setting.cell.low_world, setting.cell.high_world};
+  settings.policies.unobserved = search::Policy::obstacle;
+  settings.policies.outside = search::Policy::ignored;
+  settings.policies.robot_pockets = search::Policy::obstacle;
+  search::CameraMargins margins;
+  margins.sensor = setting.sensor;
+  margins.translation_m = setting.pose.translation_m;
+  margins.rotation_rad = setting.pose.rotation_rad;
+  settings.margins.assign(setting.rig.cameras.size(), margins);
+  settings.rho_m = setting.rho_m;
+  settings.resolution_m = resolution_m;
+  settings.v_max_m_s = 0;
+  return settings;
+}
+
+SearchPeer::SearchPeer(const PeerSetting& setting, double resolution_m)
+    : rho_m_(setting.rho_m),
+      store_(setting.rig, search_settings(setting, resolution_m)),
+      snapshot_(store_.snapshot()) {}
+
+void SearchPeer::prepare(std::span<const Frame> frames, const Region& /*region*/) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    (void)store_.update(k, frames[k]);
+  }
+  snapshot_ = store_.snapshot();
+}
+
+void SearchPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<double> distances_m) {
+  primitives_.resize(points_world.size());
+  answers_.resize(points_world.size());
+  std::transform(points_world.begin(), points_world.end(), primitives_.begin(), search::point);
+  search_.distances(snapshot_, primitives_, answers_);
+  for (std::size_t i = 0; i < answers_.size(); ++i) {
+    distances_m[i] = has_distance(answers_[i].nearest) ? answers_[i].nearest.distance_m : rho_m_;
+  }
+}
+
+}  // namespace depthgrid::bench

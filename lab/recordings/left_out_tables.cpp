@@ -1,0 +1,58 @@
+#include <sstream>
+
+#include "lab/recordings/figures.hpp"
+#include "lab/recordings/left_out_study.hpp"
+
+namespace depthgrid::bench {
+
+namespace {
+
+std::string excess(const LeftOutFigures& f, double q) {
+  return f.excesses_m.empty() ? "-" : number(1e3 * quantile(f.excesses_m, q), 0) + " mm";
+}
+
+std::string freed_by(const LeftOutFigures& f) {
+  std::string text;
+  for (const auto& [id, count] : f.freed_by) {
+    text += (text.empty() ? "" : ", ") + id + ' ' + std::to_string(count);
+  }
+  return text.empty() ? "-" : text;
+}
+
+}  // namespace
+
+std::string left_out_tables(const std::vector<LeftOutRow>& rows) {
+  std::ostringstream out;
+  out << "| margins | left out | readings | free 0.3 m before | violations | by more than 5 cm | excess: median | "
+         "95 % | largest |\n|---|---|---|---|---|---|---|---|---|\n";
+  for (const LeftOutRow& row : rows) {
+    const LeftOutFigures& f = row.figures;
+    const auto all = static_cast<double>(f.readings);
+    out << "| " << row.setting << " | " << row.left_out << " | " << f.readings << " | "
+        << share(static_cast<double>(f.free_before), all) << " | " << f.violations << " ("
+        << percent(static_cast<double>(f.violations), all) << ") | " << f.far_violations << " ("
+        << percent(static_cast<double>(f.far_violations), all) << ") | " << excess(f, 0.5) << " | " << excess(f, 0.95)
+        << " | " << excess(f, 1.0) << " |\n";
+  }
+  out << "\n| margins | left out | violations |";
+  for (std::size_t i = 0; i < kLeftOutCauses; ++i) {
+    out << ' ' << to_string(static_cast<LeftOutCause>(i)) << " |";
+  }
+  out << " of all readings, at an edge | on the floor | freed by |\n|---|---|---|---|---|";
+  for (std::size_t i = 0; i <= kLeftOutCauses; ++i) {
+    out << "---|";
+  }
+  out << '\n';
+  for (const LeftOutRow& row : rows) {
+    const LeftOutFigures& f = row.figures;
+    out << "| " << row.setting << " | " << row.left_out << " | " << f.violations << " |";
+    for (const std::size_t count : f.causes) {
+      out << ' ' << share(static_cast<double>(count), static_cast<double>(f.violations)) << " |";
+    }
+    out << ' ' << share(static_cast<double>(f.edge_readings), static_cast<double>(f.readings)) << " | "
+        << share(static_cast<double>(f.on_floor), static_cast<double>(f.violations)) << " | " << freed_by(f) << " |\n";
+  }
+  return out.str();
+}
+
+}  // namespace depthgrid::bench

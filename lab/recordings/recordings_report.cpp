@@ -1,0 +1,139 @@
+// Distances on real recordings: writes docs/recordings.md and its picture, with one command.
+//
+//   DEPTHGRID_DATA=../shared/data build/release/bin/depthgrid_recordings_report
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/files/recording.hpp"
+#include "depthgrid/grid/evaluation.hpp"
+#include "lab/machine.hpp"
+#include "lab/recordings/ball_search.hpp"
+#include "lab/recordings/ball_study.hpp"
+#include "lab/recordings/ball_tables.hpp"
+#include "lab/recordings/kitchen_study.hpp"
+#include "lab/recordings/left_out_study.hpp"
+#include "program/distances/frame_picture.hpp"
+#include "program/frame_selection.hpp"
+#include "program/output_file.hpp"
+#include "report/progress_line.hpp"
+
+namespace {
+
+using namespace depthgrid;
+
+struct Options {
+  std::string frames = "0:80:8";
+  std::string picture = "docs/images/kinect3_ball.png";
+  std::string left_out_picture = "docs/images/leave-one-out.png";
+  int left_out_frame = 32;
+  int stride = 8;
+  std::string output = "docs/recordings.md";
+  std::string text = "lab/recordings/recordings.in.md";
+};
+
+std::string file_text(const std::string& path) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) {
+    fail("cannot read ", path, "; run this from the repository's root");
+  }
+  std::string text;
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
+    text += static_cast<char>(c);
+  }
+  (void)std::fclose(file);
+  return text;
+}
+
+void replace(std::string& text, const std::string& place, const std::string& by) {
+  const auto at = text.find(place);
+  if (at == std::string::npos) {
+    fail("the text has no place ", place);
+  }
+  text.replace(at, place.size(), by);
+}
+
+/// One frame with the answers of all cameras to the points at 0.4 m and more around the ball.
+void save_picture(const Options& options, input::Recording& recording, const bench::BallTrack& track, int index) {
+  const Rig& rig = recording.rig();
+  const int number = recording.frame_number(index);
+  const auto setting = bench::ball_settings().at(1);
+  grid::GridEvaluator evaluator(rig, 0, bench::ball_cells(), setting.evaluation);
+  const auto frames = recording.read(index);
+  evaluator.update(frames);
+  const Pose T_floor_world = rig.T_floor_world.value_or(Pose::Identity());
+  std::vector<app::PictureLine> lines;
+  for (const auto& p_floor : bench::points_around(T_floor_world * track.centre_world.at(number))) {
+    const Eigen::Vector3d p_world = T_floor_world.inverse() * p_floor;
+    lines.push_back({p_world, evaluator.evaluate(p_world).nearest});
+  }
+  app::save_frame_picture(options.picture,
+                          "kinect3_ball, frame " + std::to_string(number) + ": " + setting.name + ", three cameras",
+                          rig, frames, lines, setting.evaluation.rho_m);
+}
+
+void run(const Options& options) {
+  const auto folder = bench::recording_folder("kinect3_ball");
+  if (!std::filesystem::exists(folder / "rig.json")) {
+    fail("the recording ", folder.string(), " is absent; set DEPTHGRID_DATA to the folder that holds kinect3_ball");
+  }
+  input::Recording recording(folder);
+  const auto track = bench::load_ball_track(folder / "ball.json");
+  std::vector<int> frames = app::select_frames(options.frames, recording.frame_number(0), recording.frame_count());
+  for (int& frame : frames) {
+    frame -= recording.frame_number(0);
+  }
+  bench::BallStudy study;
+  {
+    app::ProgressLine progress("kinect3_ball, frame", frames.size());
+    study = bench::study_ball(recording, track, frames, bench::ball_settings(),
+                              [&](std::size_t done, std::size_t) { progress.update(done); });
+  }
+  save_picture(options, recording, track, frames.front());
+  std::string text = file_text(options.text);
+  replace(text, "@BALL_FRAME_LIST@", options.frames.empty() ? "all" : options.frames);
+  replace(text, "@BALL_FRAMES@", std::to_string(study.frames));
+  replace(text, "@BALL_POINTS@", std::to_string(study.points_per_frame));
+  replace(text, "@BALL_TABLES@", bench::ball_tables(study, recording.rig()));
+  replace(text, "@KITCHEN_TABLES@", bench::kitchen_tables());
+  replace(text, "@SEARCH_TABLES@", bench::ball_search_tables(bench::study_ball_search(recording, track, frames)));
+  replace(text, "@STRIDE@", std::to_string(options.stride));
+  replace(text, "@LEFT_OUT_TABLES@",
+          bench::left_out_tables(bench::ball_leave_one_out(recording, frames, options.stride)));
+  replace(text, "@KITCHEN_LEFT_OUT_TABLES@", bench::left_out_tables(bench::kitchen_leave_one_out(options.stride)));
+  bench::save_left_out_picture(options.left_out_picture, recording, frames,
+                               options.left_out_frame - recording.frame_number(0));
+  replace(text, "@MACHINE@", bench::machine_line());
+  app::OutputFile output(options.output);
+  output.write(text);
+  output.commit();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Options options;
+    CLI::App app("Distances on the recordings kinect3_ball and redkitchen_poses, as docs/recordings.md.");
+    app.add_option("--frames", options.frames, "frames of kinect3_ball, first:last:step")->capture_default_str();
+    app.add_option("--picture", options.picture, "picture to write")->capture_default_str();
+    app.add_option("--left-out-picture", options.left_out_picture, "picture of the cameras left out")
+        ->capture_default_str();
+    app.add_option("--left-out-frame", options.left_out_frame, "its frame")->capture_default_str();
+    app.add_option("--stride", options.stride, "leave one out: every n-th pixel of every n-th row")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str();
+    app.add_option("--output", options.output, "file to write, - for standard output")->capture_default_str();
+    app.add_option("--text", options.text, "text with places for the tables")->capture_default_str();
+    CLI11_PARSE(app, argc, argv);
+    run(options);
+  } catch (const std::exception& error) {
+    (void)std::fprintf(stderr, "depthgrid_recordings_report: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

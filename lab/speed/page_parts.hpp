@@ -1,0 +1,20 @@
+// The parts of the page that are tables of measured figures.
+#pragma once
+
+#include <iosfwd>
+#include <vector>
+
+#include "lab/speed/goals.hpp"
+#include "lab/speed/record.hpp"
+
+namespace depthgrid::bench {
+
+void write_goals(std::ostream& page, const std::vector<Goal>& all);
+/// Where the time of what was missed goes, as far as counts tell.
+void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report& report);
+/// The search's own figures.
+void write_ours(std::ostream& page, const Report& report);
+/// All peers' tables, and what is quicker than ours.
+void write_side_by_side(std::ostream& page, const Report& report);
+
+}  // namespace depthgrid::bench

@@ -1,0 +1,59 @@
+// Answers as CSV or JSON lines.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "depthgrid/core/pose.hpp"
+#include "depthgrid/core/proximity.hpp"
+#include "depthgrid/core/rig.hpp"
+#include "depthgrid/files/control_points.hpp"
+
+namespace depthgrid::app {
+
+enum class AnswerFormat : std::uint8_t { csv, json_lines };
+
+/// What a method says about one control point, in the world frame.
+struct PointAnswer {
+  Proximity nearest;
+  Eigen::Vector3d hybrid_direction_world = Eigen::Vector3d::Zero();
+  std::int64_t obstacle_points = 0;
+  /// The point of a capsule's axis that is nearest to the obstacle; NaN where there is none.
+  Eigen::Vector3d on_axis_world = Eigen::Vector3d::Constant(Proximity::kNaN);
+};
+
+/// What is written beyond the columns that all methods have.
+struct AnswerColumns {
+  bool hybrid_direction = false;
+  bool obstacle_points = false;  ///< how many the hybrid direction stands on
+  bool shapes = false;           ///< radius and end of the control points, and where on their axis the distance is
+};
+
+/// Turns answers into lines of text. A distance that is not known is an empty cell or null, never a number. Distances
+/// (known_to_m too) are rounded down to a micrometre. Immutable after construction.
+class AnswerWriter {
+ public:
+  /// `T_output_world` maps the world to the frame of the control points, in which everything is written. `rig` must
+  /// outlive the writer.
+  AnswerWriter(AnswerFormat format, const Rig& rig, Pose T_output_world, const AnswerColumns& columns);
+
+  /// The first line: column names of CSV, nothing for JSON lines.
+  [[nodiscard]] std::string header() const;
+
+  /// One line. `point` is in the output frame; `time_s` is empty where the recording does not say.
+  [[nodiscard]] std::string line(int frame, std::optional<double> time_s, const input::ControlPoint& point,
+                                 const PointAnswer& answer) const;
+
+ private:
+  struct Row;
+  [[nodiscard]] std::string csv(const Row& row) const;
+  [[nodiscard]] std::string json(const Row& row) const;
+
+  AnswerFormat format_;
+  const Rig& rig_;
+  Pose T_output_world_;
+  AnswerColumns columns_;
+};
+
+}  // namespace depthgrid::app

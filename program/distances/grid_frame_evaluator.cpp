@@ -1,0 +1,107 @@
+#include "program/distances/grid_frame_evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/files/png.hpp"
+#include "depthgrid/grid/map/map_file.hpp"
+#include "report/progress_line.hpp"
+
+namespace depthgrid::app {
+
+namespace {
+
+class GridFrameEvaluator final : public FrameEvaluator {
+ public:
+  GridFrameEvaluator(const Rig& rig, std::size_t principal, const grid::DepthQuantisation& cells,
+                     const grid::EvaluationSettings& settings, std::shared_ptr<const grid::DepthGridMap> map)
+      : evaluator_(rig, principal, cells, settings, std::move(map)),
+        hybrid_(settings.collect == grid::Collect::hybrid) {}
+
+  bool update(std::span<const Frame> frames) override { return evaluator_.update(frames); }
+
+  std::vector<PointAnswer> evaluate(std::span<const input::ControlPoint> points_world) override {
+    std::vector<PointAnswer> answers;
+    answers.reserve(points_world.size());
+    for (const input::ControlPoint& point : points_world) {
+      if (point.radius_m > 0 || point.end_m) {
+        fail("control point '", point.id, "' has a ", point.end_m ? "second end" : "radius",
+             ", which only --method search knows");
+      }
+      const grid::Evaluation answer = evaluator_.evaluate(point.p_m);
+      answers.push_back({answer.nearest, answer.hybrid_direction_world, answer.obstacle_points,
+                         Eigen::Vector3d::Constant(Proximity::kNaN)});
+    }
+    return answers;
+  }
+
+  [[nodiscard]] AnswerColumns columns() const override { return {hybrid_, hybrid_, false}; }
+
+ private:
+  grid::GridEvaluator evaluator_;
+  bool hybrid_;
+};
+
+/// The deepest reading of the principal camera in the frames chosen: the grid then holds everything it sees.
+double deepest_reading_m(input::Recording& recording, std::size_t camera, const MeasurementRule& rule,
+                         const std::vector<int>& indices) {
+  ProgressLine progress("looking for the deepest reading, frame", indices.size());
+  input::Gray16Image image;
+  const auto& intrinsics = recording.rig().cameras[camera].intrinsics;
+  double deepest_m = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const auto file = recording.depth_file(indices[i], camera);
+    input::read_png16(file, image);
+    if (image.width_px != intrinsics.width_px || image.height_px != intrinsics.height_px) {
+      (void)recording.read(indices[i]);  // says what is wrong with this frame
+    }
+    const auto view =
+        depth_view(image.pixels, image.width_px, image.height_px, recording.rig().cameras[camera].metres_per_unit);
+    DepthImage depth(image.width_px, image.height_px);
+    normalise(view, rule, depth);
+    const auto* end = depth.data() + depth.index(0, depth.height_px());
+    deepest_m = std::max(deepest_m, static_cast<double>(*std::max_element<const float*>(depth.data(), end)));
+    progress.update(i + 1);
+  }
+  if (!(deepest_m > 0)) {
+    fail("camera '", recording.rig().cameras[camera].id,
+         "' spans the depth grid and measures nothing in the chosen frames, so the grid has no far end; give --far or "
+         "--count, or another --principal");
+  }
+  return deepest_m;
+}
+
+/// The stored map, or nothing: the closed form is used then.
+std::shared_ptr<const grid::DepthGridMap> load_map(const GridSource& source, const Rig& rig,
+                                                   const grid::DepthQuantisation& cells) {
+  if (source.map_file.empty()) {
+    return nullptr;
+  }
+  const std::vector<grid::SecondaryCamera> secondaries = grid::secondary_cameras(rig, source.principal);
+  const grid::DepthGrid depth_grid(rig.cameras[source.principal].intrinsics, cells);
+  return std::make_shared<const grid::DepthGridMap>(grid::load_map(source.map_file, depth_grid, secondaries));
+}
+
+}  // namespace
+
+std::unique_ptr<FrameEvaluator> make_grid_evaluator(input::Recording& recording, const std::vector<int>& frame_indices,
+                                                    const EvaluationOptions& options, const GridSource& source,
+                                                    const grid::EvaluationSettings& settings) {
+  const Rig& rig = recording.rig();
+  grid::DepthQuantisation base;
+  std::optional<double> reach_m;
+  if (!source.map_file.empty()) {
+    base = grid::read_map_info(source.map_file).calibration.quantisation;
+  } else if (!options.count) {
+    const MeasurementRule& rule = rig.cameras[source.principal].rule;
+    reach_m =
+        std::isfinite(rule.far_m) ? rule.far_m : deepest_reading_m(recording, source.principal, rule, frame_indices);
+  }
+  const grid::DepthQuantisation cells = depth_quantisation(options, base, reach_m);
+  return std::make_unique<GridFrameEvaluator>(rig, source.principal, cells, settings, load_map(source, rig, cells));
+}
+
+}  // namespace depthgrid::app

@@ -1,0 +1,32 @@
+// The control points that a command line names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "depthgrid/core/pose.hpp"
+#include "depthgrid/files/control_points.hpp"
+
+namespace depthgrid::app {
+
+struct PointOptions {
+  std::vector<std::string> texts;  ///< x,y,z or name=x,y,z, or with radius and end
+  std::string file;                ///< CSV; empty: none
+};
+
+/// Control points of the command line, in every frame, and those of a file, which may move.
+struct Points {
+  std::vector<input::ControlPoint> of_command_line;
+  input::ControlPoints of_file;
+
+  /// Throws Error when two of one frame have the same name.
+  [[nodiscard]] std::vector<input::ControlPoint> at(int frame_number) const;
+};
+
+/// Throws UsageError when there is none or one cannot be read, and Error where the file is broken.
+Points control_points(const PointOptions& options);
+
+/// The points, given in the output frame, in the world's.
+std::vector<input::ControlPoint> in_world(std::vector<input::ControlPoint> points, const Pose& T_world_output);
+
+}  // namespace depthgrid::app

@@ -1,0 +1,61 @@
+#include "program/distances/search_frame_evaluator.hpp"
+
+namespace depthgrid::app {
+
+namespace {
+
+class SearchFrameEvaluator final : public FrameEvaluator {
+ public:
+  SearchFrameEvaluator(const Rig& rig, const search::Settings& settings, const search::Budget& budget, bool hybrid)
+      : store_(rig, settings), budget_(budget), hybrid_(hybrid) {}
+
+  bool update(std::span<const Frame> frames) override {
+    bool complete = true;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      complete = store_.update(k, frames[k]) == search::UpdateResult::taken && complete;
+    }
+    return complete;
+  }
+
+  std::vector<PointAnswer> evaluate(std::span<const input::ControlPoint> points_world) override {
+    std::vector<search::Primitive> primitives;
+    primitives.reserve(points_world.size());
+    for (const input::ControlPoint& point : points_world) {
+      primitives.push_back(primitive_of(point));
+    }
+    std::vector<search::Answer> found(primitives.size());
+    const search::Snapshot snapshot = store_.snapshot();
+    if (hybrid_) {
+      search_.hybrid(snapshot, primitives, found, budget_);
+    } else {
+      search_.distances(snapshot, primitives, found, budget_);
+    }
+    std::vector<PointAnswer> answers;
+    answers.reserve(found.size());
+    for (const search::Answer& answer : found) {
+      answers.push_back({answer.nearest, answer.hybrid_direction_world, 0, answer.on_axis_world});
+    }
+    return answers;
+  }
+
+  [[nodiscard]] AnswerColumns columns() const override { return {hybrid_, false, true}; }
+
+ private:
+  search::ViewStore store_;
+  search::Search search_;
+  search::Budget budget_;
+  bool hybrid_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const search::Settings& settings,
+                                                      const search::Budget& budget, bool hybrid) {
+  return std::make_unique<SearchFrameEvaluator>(rig, settings, budget, hybrid);
+}
+
+search::Primitive primitive_of(const input::ControlPoint& point) noexcept {
+  return {point.p_m, point.end_m.value_or(point.p_m), point.radius_m};
+}
+
+}  // namespace depthgrid::app

@@ -1,0 +1,136 @@
+#include "program/distances/search_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "depthgrid/files/number_parsing.hpp"
+#include "program/usage_error.hpp"
+
+namespace depthgrid::app {
+
+namespace {
+
+CLI::Option* add_policy(CLI::App& command, const char* option, std::optional<std::string>& target,
+                        const char* description) {
+  return command.add_option(option, target, description)
+      ->check(CLI::IsMember({"obstacle", "ignored"}))
+      ->group("Search");
+}
+
+search::Policy policy_of(const std::optional<std::string>& text) {
+  return !text ? search::Policy::undeclared : text == "ignored" ? search::Policy::ignored : search::Policy::obstacle;
+}
+
+/// "x0,y0,z0,x1,y1,z1", metres.
+search::BoxSpace box_of(const std::string& text) {
+  std::array<double, 6> numbers{};
+  std::string_view rest = text;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const std::size_t comma = rest.find(',');
+    const auto number = input::parse_number<double>(rest.substr(0, comma));
+    if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (k + 1 == numbers.size())) {
+      fail_usage("--box ", text, ": must be six numbers x0,y0,z0,x1,y1,z1, metres: the low and the high corner");
+    }
+    numbers[k] = *number;
+    rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 1);
+  }
+  return {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+}
+
+/// Everything that has to be said and was not, in one message.
+void check_stated(const SearchOptions& options, const EvaluationOptions& evaluation) {
+  std::string missing;
+  const auto need = [&missing](bool stated, const char* option) {
+    if (!stated) {
+      missing.append(missing.empty() ? "" : ", ").append(option);
+    }
+  };
+  need(options.unobserved.has_value(), "--unobserved obstacle|ignored");
+  need(evaluation.outside.has_value(), "--outside obstacle|ignored");
+  need(options.robot_pockets.has_value(), "--robot-pockets obstacle|ignored");
+  need(options.v_max_m_s.has_value(), "--v-max M/S");
+  need(options.box || (evaluation.d_min_m && options.d_max_m),
+       "the space of interest (--box x0,y0,z0,x1,y1,z1 or --d-min and --d-max)");
+  if (!missing.empty()) {
+    fail_usage("--method search needs ", missing,
+               ": nothing that decides what counts as an obstacle has a default (docs/search.md)");
+  }
+}
+
+}  // namespace
+
+void add_search_options(CLI::App& command, SearchOptions& options) {
+  add_policy(command, "--unobserved", options.unobserved, "space that no camera looks at");
+  add_policy(command, "--robot-pockets", options.robot_pockets, "the shadow right behind the robot");
+  command
+      .add_option("--ignored-pocket", options.ignored_pocket_m,
+                  "how deep the ignored shadow behind the robot is, metres (default 0)")
+      ->group("Search");
+  command.add_option("--v-max", options.v_max_m_s, "fastest obstacle, metres a second; 0: nothing moves")
+      ->group("Search");
+  command.add_option("--box", options.box, "space of interest: x0,y0,z0,x1,y1,z1, metres, in the frame of --in")
+      ->group("Search");
+  command
+      .add_option("--d-max", options.d_max_m,
+                  "space of interest: what the principal camera sees from --d-min to this depth, metres")
+      ->group("Search");
+  command.add_option("--resolution", options.resolution_m, "tightness, metres (default 0.005)")->group("Search");
+  command
+      .add_option("--budget-nodes", options.budget_nodes,
+                  "cells that the answers of one frame may open; what is not finished is a lower bound (default: all)")
+      ->group("Search");
+}
+
+void refuse_search_options(const SearchOptions& options, const std::string& method) {
+  const std::array<std::pair<bool, const char*>, 8> options_given{
+      {{options.unobserved.has_value(), "--unobserved"},
+       {options.robot_pockets.has_value(), "--robot-pockets"},
+       {options.ignored_pocket_m.has_value(), "--ignored-pocket"},
+       {options.v_max_m_s.has_value(), "--v-max"},
+       {options.resolution_m.has_value(), "--resolution"},
+       {options.box.has_value(), "--box"},
+       {options.d_max_m.has_value(), "--d-max"},
+       {options.budget_nodes.has_value(), "--budget-nodes"}}};
+  for (const auto& [given, name] : options_given) {
+    if (given) {
+      fail_usage(name, " has no effect with --method ", method, "; use --method search");
+    }
+  }
+}
+
+search::Settings search_settings(const SearchOptions& options, const EvaluationOptions& evaluation,
+                                 std::size_t principal, const std::vector<CameraMargins>& margins) {
+  check_stated(options, evaluation);
+  search::Settings settings;
+  if (options.box) {
+    if (options.d_max_m || evaluation.d_min_m) {
+      fail_usage("--box and --d-min, --d-max exclude each other: the space of interest is a box or a camera's view");
+    }
+    settings.space = box_of(*options.box);
+  } else {
+    settings.space = search::FrustumSpace{principal, *evaluation.d_min_m, *options.d_max_m};
+  }
+  settings.policies.unobserved = policy_of(options.unobserved);
+  settings.policies.outside = policy_of(evaluation.outside);
+  settings.policies.robot_pockets = policy_of(options.robot_pockets);
+  settings.policies.ignored_pocket_m = options.ignored_pocket_m.value_or(0.0);
+  settings.margins = margins;
+  settings.rho_m = evaluation.rho_m;
+  settings.resolution_m = options.resolution_m.value_or(settings.resolution_m);
+  settings.v_max_m_s = *options.v_max_m_s;
+  return settings;
+}
+
+search::Budget search_budget(const SearchOptions& options) {
+  if (options.budget_nodes && *options.budget_nodes < 1) {
+    fail_usage("--budget-nodes ", *options.budget_nodes, " must be at least 1");
+  }
+  search::Budget budget;
+  budget.nodes = options.budget_nodes.value_or(0);
+  return budget;
+}
+
+}  // namespace depthgrid::app

@@ -1,0 +1,154 @@
+#include "program/info/info_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "depthgrid/files/recording.hpp"
+#include "program/frame_selection.hpp"
+#include "program/info/agreement.hpp"
+#include "program/info/info_report.hpp"
+#include "program/info/surface.hpp"
+#include "program/output_file.hpp"
+#include "program/usage_error.hpp"
+#include "report/progress_line.hpp"
+
+namespace depthgrid::app {
+
+namespace {
+
+struct InfoOptions {
+  std::string recording;
+  std::vector<std::string> cameras;
+  std::string frames;
+  std::optional<double> near_m;
+  std::optional<double> far_m;
+  double limit_m = 5.0;
+  double least_overlap = 0.0;
+  int stride_px = 1;
+  bool all_pairs = false;
+  std::string output = "-";
+};
+
+/// What the cameras measure on their own.
+void survey_images(input::Recording& recording, const std::vector<int>& indices, RecordingInfo& info) {
+  ProgressLine progress("reading frame", indices.size());
+  DepthImage depth;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const auto frames = recording.read(indices[i]);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const auto& camera = recording.rig().cameras[k];
+      depth = DepthImage(camera.intrinsics.width_px, camera.intrinsics.height_px);
+      normalise(frames[k].depth, camera.rule, depth);
+      info.cameras[k].add(depth);
+    }
+    progress.update(i + 1);
+  }
+}
+
+/// What every ordered pair of cameras agrees on.
+void compare_cameras(input::Recording& recording, const std::vector<int>& indices, const InfoOptions& options,
+                     RecordingInfo& info) {
+  const Rig& rig = recording.rig();
+  const std::size_t count = rig.cameras.size();
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = 0; b < count; ++b) {
+      if (a != b) {
+        info.pairs.push_back({a, b, {}});
+      }
+    }
+  }
+  std::vector<SensorMargin> margins;
+  for (const auto& camera : info.cameras) {
+    margins.push_back(camera.noise.suggested_margin());
+  }
+  ProgressLine progress("comparing pairs of cameras,", indices.size() * info.pairs.size());
+  std::vector<Surface> surfaces(count);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const auto frames = recording.read(indices[i]);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& camera = rig.cameras[k];
+      DepthImage depth(camera.intrinsics.width_px, camera.intrinsics.height_px);
+      normalise(frames[k].depth, camera.rule, depth);
+      make_surface(camera.intrinsics, depth, surfaces[k]);
+    }
+    for (std::size_t n = 0; n < info.pairs.size(); ++n) {
+      auto& [a, b, agreement] = info.pairs[n];
+      const Pose T_b_a = rig.cameras[b].T_world_camera.inverse() * rig.cameras[a].T_world_camera;
+      add_pair(surfaces[a], surfaces[b], rig.cameras[b].intrinsics, T_b_a, options.limit_m, options.stride_px,
+               margins[a], margins[b], agreement);
+      progress.update(i * info.pairs.size() + n + 1);
+    }
+  }
+}
+
+void check(const InfoOptions& options) {
+  if (!(options.limit_m > 0)) {
+    fail_usage("--limit ", options.limit_m, " must be greater than 0");
+  }
+  if (!(options.least_overlap >= 0 && options.least_overlap <= 1)) {
+    fail_usage("--least-overlap ", options.least_overlap, " must lie in 0 ... 1");
+  }
+  if (options.stride_px < 1) {
+    fail_usage("--stride ", options.stride_px, " must be at least 1");
+  }
+}
+
+void run(const InfoOptions& options) {
+  check(options);
+  input::RecordingOptions recording_options;
+  recording_options.camera_ids = options.cameras;
+  recording_options.near_m = options.near_m;
+  recording_options.far_m = options.far_m;
+  input::Recording recording(options.recording, recording_options);
+  const int first = recording.frame_number(0);
+  std::vector<int> indices = select_frames(options.frames, first, recording.frame_count());
+  for (int& index : indices) {
+    index -= first;
+  }
+
+  OutputFile output(options.output);
+  RecordingInfo info;
+  info.frames_used = static_cast<int>(indices.size());
+  info.cameras.resize(recording.rig().cameras.size());
+  survey_images(recording, indices, info);
+  if (recording.simultaneous() || recording.frame_count() == 1) {
+    compare_cameras(recording, indices, options, info);
+  }
+  output.write(to_text(recording, info, {options.limit_m, options.least_overlap, options.all_pairs}));
+  output.commit();
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "what a recording holds and how well its cameras agree");
+  command->add_option("RECORDING", options->recording, "folder with a rig.json, or a rig file")->required();
+  command->add_option("--cameras", options->cameras, "ids of the cameras to use (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--frames", options->frames, "frames: 5, 0:80 (both included), 0:80:8 or 1,4,9 (default: all)");
+  command->add_option("--near", options->near_m, "nearest measurable depth, metres");
+  command->add_option("--far", options->far_m, "farthest measurable depth, metres");
+  command->add_option("--limit", options->limit_m, "compare points up to this depth, metres")->capture_default_str();
+  command
+      ->add_option(
+          "--least-overlap", options->least_overlap,
+          "leave out pairs where a smaller share of the first camera's points meets a measurement of the second")
+      ->capture_default_str();
+  command->add_option("--stride", options->stride_px, "compare every n-th pixel of every n-th row")
+      ->capture_default_str();
+  command->add_flag("--all-pairs", options->all_pairs, "print every pair, also when there are more than 30");
+  command->add_option("--output", options->output, "file to write, - for standard output")->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"
+      "  depthgrid info ../shared/data/redkitchen_poses --limit 4 --least-overlap 0.25 --stride 2\n"
+      "How the figures are taken and what the suggested margins mean stands in docs/command.md.");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace depthgrid::app

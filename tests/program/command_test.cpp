@@ -1,0 +1,240 @@
+// What the command does when it is used as intended.
+#include "program/command.hpp"
+
+#include <gmock/gmock.h>
+#include <rapidjson/document.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace depthgrid::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
+    end = line.find(',', begin);
+    cells.push_back(line.substr(begin, end == std::string::npos ? end : end - begin));
+  }
+  return cells;
+}
+
+TEST(Command, SaysItsVersion) {
+  const TemporaryFolder folder;
+  const auto result = run_command("--version", folder);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out, "depthgrid " DEPTHGRID_VERSION "\n");
+  EXPECT_EQ(result.err, "");
+}
+
+TEST(Command, HelpOfEveryCommandHasExamples) {
+  const TemporaryFolder folder;
+  for (const std::string command : {"", "demo ", "distances ", "info ", "map "}) {
+    const auto result = run_command(command + "--help", folder);
+    EXPECT_EQ(result.exit_code, 0) << command;
+    EXPECT_THAT(result.out, HasSubstr("depthgrid")) << command;
+    EXPECT_THAT(result.out, HasSubstr("Example")) << command;
+    EXPECT_EQ(result.err, "") << command;
+  }
+}
+
+TEST(Distances, OfAWallAsCsv) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto result = run_command("distances . --point 0.2,0,1.7 --point far=0.2,0,1.2 --point beside=5,0,1", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  const auto lines = lines_of(result.out);
+  ASSERT_EQ(lines.size(), 7U) << result.out;
+  EXPECT_EQ(lines[0],
+            "frame,time_s,point,x_m,y_m,z_m,distance_m,state,camera,nearest_x_m,nearest_y_m,nearest_z_m,"
+            "direction_x,direction_y,direction_z,stale,budget,known_to_m");
+  const auto near = cells_of(lines[1]);
+  ASSERT_EQ(near.size(), 18U);
+  EXPECT_EQ(near[0], "5");
+  EXPECT_EQ(near[1], "0.000000");
+  EXPECT_EQ(near[2], "p1");
+  EXPECT_EQ(near[5], "1.7");
+  EXPECT_LE(std::stod(near[6]), 0.3);
+  EXPECT_GE(std::stod(near[6]), 0.28);  // two cells
+  EXPECT_EQ(near[7], "measured");
+  EXPECT_NEAR(std::stod(near[14]), 1.0, 1e-3);
+  EXPECT_NEAR(std::stod(near[17]), 0.3, 0.02);  // the grid ends at the wall
+  const auto far = cells_of(lines[2]);
+  EXPECT_EQ(far[2], "far");
+  EXPECT_EQ(far[6], "0.400000");
+  EXPECT_EQ(far[7], "beyond_rho");
+  for (std::size_t i = 8; i < 15; ++i) {
+    EXPECT_EQ(far[i], "") << i;
+  }
+  const auto beside = cells_of(lines[3]);
+  EXPECT_EQ(beside[6], "");  // not known: no number at all
+  EXPECT_EQ(beside[7], "outside");
+  EXPECT_EQ(beside[17], "");
+  EXPECT_EQ(cells_of(lines[4])[0], "6");
+  EXPECT_EQ(cells_of(lines[4])[1], "0.100000");
+}
+
+TEST(Distances, AsJsonLinesInTheFloorFrame) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto result = run_command(
+      "distances rig.json --in floor --point a=0.2,0,2.7 --point b=5,0,2 --frames 6 --format jsonl --collect hybrid "
+      "--output answers.jsonl",
+      folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  const auto lines = lines_of(read_bytes(folder / "answers.jsonl"));
+  ASSERT_EQ(lines.size(), 2U);
+  rapidjson::Document a;
+  a.Parse(lines[0].c_str());
+  ASSERT_FALSE(a.HasParseError()) << lines[0];
+  EXPECT_EQ(a["frame"].GetInt(), 6);
+  EXPECT_STREQ(a["point"].GetString(), "a");
+  EXPECT_NEAR(a["distance_m"].GetDouble(), 0.29, 0.0101);
+  EXPECT_NEAR(a["nearest_m"][2].GetDouble(), 3.0, 0.02);  // the wall in the floor frame
+  EXPECT_GT(a["obstacle_points"].GetInt(), 10);
+  rapidjson::Document b;
+  b.Parse(lines[1].c_str());
+  ASSERT_FALSE(b.HasParseError()) << lines[1];
+  EXPECT_TRUE(b["distance_m"].IsNull());
+  EXPECT_TRUE(b["nearest_m"].IsNull());
+  EXPECT_TRUE(b["camera"].IsNull());
+  EXPECT_NEAR(a["known_to_m"].GetDouble(), 0.3, 0.02);
+  EXPECT_TRUE(b["known_to_m"].IsNull());
+}
+
+TEST(Distances, KnownToIsEmptyWhereOutsideCountsAsObstacle) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto result = run_command("distances . --point 0.2,0,1.7 --frames 5 --outside obstacle", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(cells_of(lines_of(result.out).at(1)).at(17), "");
+}
+
+/// The wall at 2 m is beyond far; with clamp it frees up to there, with and without a lens to straighten.
+TEST(Distances, ClampBeyondFarHoldsWithLensDistortion) {
+  for (const double k1 : {0.0, -0.05}) {
+    const TemporaryFolder folder;
+    write_wall(folder);
+    auto file = wall_rig();
+    for (auto& camera : file.rig.cameras) {
+      camera.distortion = make_distortion(Distortion::Model::plumb_bob, std::vector<double>{k1, 0, 0, 0, 0});
+    }
+    input::save_rig(file, folder / "rig.json");
+    const std::string question = "distances . --point 0.2,0,1.7 --frames 5 --far 1.9";
+    const auto clamped = run_command(question + " --beyond-far clamp", folder);
+    const auto invalid = run_command(question + " --beyond-far invalid", folder);
+    ASSERT_EQ(clamped.exit_code, 0) << clamped.err;
+    ASSERT_EQ(invalid.exit_code, 0) << invalid.err;
+    EXPECT_NEAR(std::stod(cells_of(lines_of(clamped.out).at(1))[6]), 0.19, 0.0151) << k1;
+    EXPECT_EQ(cells_of(lines_of(invalid.out).at(1))[6], "0.000000") << k1;
+  }
+}
+
+TEST(Distances, CombineDifferentTimesWhenTheUserSaysSo) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const std::string question = "distances . --point 0.2,0,1.7 --frames 5";
+  const auto simultaneous = run_command(question, folder);
+  auto file = wall_rig();
+  file.simultaneous = false;
+  input::save_rig(file, folder / "rig.json");
+  EXPECT_EQ(run_command(question, folder).exit_code, 2);
+  EXPECT_EQ(run_command(question + " --static-scene", folder).out, simultaneous.out);
+  EXPECT_EQ(run_command(question + " --margin-time 0.01", folder).exit_code, 0);
+  EXPECT_EQ(run_command(question + " --cameras left", folder).exit_code, 0);
+}
+
+TEST(Distances, PointsOfAFileMayMove) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("points.csv", "frame,id,x,y,z\n5,hand,0.2,0,1.7\n6,hand,0.2,0,1.8\n");
+  const auto result = run_command("distances . --points points.csv --principal right --method letter", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto lines = lines_of(result.out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_NEAR(std::stod(cells_of(lines[1])[6]), 0.3, 0.02);
+  EXPECT_NEAR(std::stod(cells_of(lines[2])[6]), 0.2, 0.02);
+}
+
+TEST(Distances, MarginsShortenThem) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto plain = run_command("distances . --point 0.2,0,1.7 --frames 5", folder);
+  const auto margin = run_command("distances . --point 0.2,0,1.7 --frames 5 --margin-constant 0.05", folder);
+  ASSERT_EQ(margin.exit_code, 0) << margin.err;
+  const double without_m = std::stod(cells_of(lines_of(plain.out).at(1))[6]);
+  const double with_m = std::stod(cells_of(lines_of(margin.out).at(1))[6]);
+  EXPECT_NEAR(without_m - with_m, 0.05, 0.0101);
+}
+
+TEST(Distances, WritesPictures) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto result = run_command("distances . --point 0.2,0,1.7 --pictures pictures", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const std::string name : {"pictures/frame_0005.png", "pictures/frame_0006.png"}) {
+    EXPECT_THAT(read_bytes(folder / name), StartsWith("\x89PNG")) << name;
+  }
+}
+
+TEST(Distances, UsesAStoredMap) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  ASSERT_EQ(run_command("map build . --count 200 --output wall.map", folder).exit_code, 0);
+  const std::string question = "distances . --variant letter --point 0.2,0,1.7 --frames 5";
+  const auto stored = run_command(question + " --map wall.map", folder);
+  const auto closed = run_command(question + " --count 200", folder);
+  ASSERT_EQ(stored.exit_code, 0) << stored.err;
+  EXPECT_EQ(stored.out, closed.out);
+  EXPECT_EQ(run_command("map info wall.map", folder).exit_code, 0);
+}
+
+TEST(Info, SaysHowCamerasAgree) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const auto result = run_command("info .", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("wall: 2 cameras, 2 frames (5 to 6), 2 looked at, 10 a second"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("left +64 x 48 +0.0 % +2.000 ... 2.000"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("left to right +0 mm +100 % +0 mm +100 % +0 % +0 %"));
+}
+
+TEST(Info, SeesACameraThatStandsWrong) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  auto file = wall_rig();
+  file.rig.cameras[1].T_world_camera.translation().z() = -0.2;  // its wall is 0.2 m nearer than the other's
+  input::save_rig(file, folder / "rig.json");
+  const auto result = run_command("info .", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("left to right +20[01] mm +0 % +20[01] mm +0 % +0 % +100 %"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("right to left +20[01] mm +0 % +20[01] mm +0 % +100 % +0 %"));
+  EXPECT_THAT(result.out, HasSubstr("--margin-translation 0.20"));
+}
+
+TEST(Demo, Runs) {
+  const TemporaryFolder folder;
+  const auto result = run_command("demo", folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out, "");
+}
+
+}  // namespace
+}  // namespace depthgrid::test
