@@ -36,6 +36,7 @@ namespace avoidance = depthgrid::avoidance;
 namespace control = depthgrid::control;
 namespace robot = depthgrid::robot;
 namespace search = depthgrid::search;
+namespace views = depthgrid::views;
 using depthgrid::Pose;
 
 namespace {
@@ -231,11 +232,11 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
 
   // 2. Where distances come from. What counts as an obstacle has no default (docs/search.md).
   const depthgrid::Rig rig = two_cameras();
-  search::Settings what;
-  what.space = search::BoxSpace{{-1.5, -1.6, 0.2}, {2.1, 2.0, 2.6}};  // YOURS: the arm's reach and rho around it; world
-  what.policies.unobserved = search::Policy::obstacle;
-  what.policies.outside = search::Policy::obstacle;
-  what.policies.robot_pockets = search::Policy::ignored;
+  views::Settings what;
+  what.space = views::BoxSpace{{-1.5, -1.6, 0.2}, {2.1, 2.0, 2.6}};  // YOURS: the arm's reach and rho around it; world
+  what.policies.unobserved = views::Policy::obstacle;
+  what.policies.outside = views::Policy::obstacle;
+  what.policies.robot_pockets = views::Policy::ignored;
   what.policies.ignored_pocket_m = 0.10;
   what.margins = depthgrid::camera_margins(rig);
   what.v_max_m_s = kFastestObstacle_m_s;

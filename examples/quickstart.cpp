@@ -23,6 +23,7 @@
 #include "depthgrid/search/search.hpp"
 
 namespace search = depthgrid::search;
+namespace views = depthgrid::views;
 
 namespace {
 
@@ -59,17 +60,17 @@ int run() {
   camera.margins->rotation_rad = 0.002;   // and looks
 
   // 2. What counts as an obstacle. None of this has a default.
-  search::Settings settings;
-  settings.space = search::BoxSpace{{0.3, -1.0, 0.2}, {2.4, 1.0, 1.9}};
-  settings.policies.unobserved = search::Policy::obstacle;     // what no camera looks at
-  settings.policies.outside = search::Policy::ignored;         // beyond the box: known_to_m says how far it is
-  settings.policies.robot_pockets = search::Policy::obstacle;  // the shadow right behind the robot
+  views::Settings settings;
+  settings.space = views::BoxSpace{{0.3, -1.0, 0.2}, {2.4, 1.0, 1.9}};
+  settings.policies.unobserved = views::Policy::obstacle;     // what no camera looks at
+  settings.policies.outside = views::Policy::ignored;         // beyond the box: known_to_m says how far it is
+  settings.policies.robot_pockets = views::Policy::obstacle;  // the shadow right behind the robot
   settings.margins = depthgrid::camera_margins(rig);
   settings.v_max_m_s = 1.6;  // nothing moves faster
   settings.rho_m = 0.6;      // how far around a link obstacles matter
 
   // 3. Every buffer is allocated here.
-  search::ViewStore store(rig, settings);
+  views::ViewStore store(rig, settings);
   search::Search search;
 
   // 4. For every exposure of every camera, as it comes. A camera that moves gives its pose with the image.
@@ -77,7 +78,7 @@ int run() {
   depthgrid::Frame frame;
   frame.depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
   frame.time_s = 0.0;  // middle of the exposure, one clock for all cameras
-  if (store.update(0, frame) != search::UpdateResult::taken) {
+  if (store.update(0, frame) != views::UpdateResult::taken) {
     const char* reason = store.why_unusable(0, frame);  // null: more snapshots are held than the store was made for
     std::printf("frame not taken: %s\n", reason != nullptr ? reason : "all buffers are held");
   }

@@ -11,7 +11,7 @@
 
 namespace {
 
-using depthgrid::input::RigFile;
+using depthgrid::files::RigFile;
 
 void require(bool condition) {
   if (!condition) {
@@ -20,7 +20,7 @@ void require(bool condition) {
 }
 
 void check_round_trip(const RigFile& first) {
-  const RigFile second = depthgrid::input::parse_rig(depthgrid::input::to_json(first), "written");
+  const RigFile second = depthgrid::files::parse_rig(depthgrid::files::to_json(first), "written");
   require(first.rig.cameras.size() == second.rig.cameras.size() && first.depth_files == second.depth_files);
   require(first.first_frame == second.first_frame && first.frame_count == second.frame_count);
   for (std::size_t k = 0; k < first.rig.cameras.size(); ++k) {
@@ -28,7 +28,7 @@ void check_round_trip(const RigFile& first) {
     const depthgrid::RigCamera& b = second.rig.cameras[k];
     require(a.id == b.id && a.intrinsics.width_px == b.intrinsics.width_px && a.metres_per_unit == b.metres_per_unit);
     require(a.T_world_camera.isApprox(b.T_world_camera, 1e-9));
-    require(!depthgrid::input::depth_file_name(first.depth_files[k], first.first_frame).empty() ||
+    require(!depthgrid::files::depth_file_name(first.depth_files[k], first.first_frame).empty() ||
             first.depth_files[k].empty());
   }
 }
@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   RigFile file;
   try {
-    file = depthgrid::input::parse_rig(text, "fuzz");
+    file = depthgrid::files::parse_rig(text, "fuzz");
   } catch (const depthgrid::Error& error) {
     require(std::string_view(error.what()).find('\n') == std::string_view::npos);
     return 0;

@@ -3,8 +3,8 @@
 
 #include "report/machine.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 using report::machine_line;
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

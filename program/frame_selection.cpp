@@ -6,12 +6,12 @@
 #include "depthgrid/files/number_parsing.hpp"
 #include "program/usage_error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
 long frame_number(const std::string& text, const std::string& whole) {
-  const auto value = input::parse_number<long>(text);
+  const auto value = files::parse_number<long>(text);
   if (!value) {
     fail_usage("--frames ", whole, ": '", text, "' is not a frame number; write 5, 0:80, 0:80:8 or 1,4,9");
   }
@@ -23,7 +23,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0;;) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.emplace_back(input::trimmed(text.substr(begin, end - begin)));
+    parts.emplace_back(files::trimmed(text.substr(begin, end - begin)));
     if (end == text.size()) {
       return parts;
     }
@@ -65,4 +65,4 @@ std::vector<int> select_frames(const std::string& text, int first, int count) {
   return frames;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -34,7 +34,7 @@ int run(int argc, char** argv) {
   CLI::App app(
       "Computes a lower bound of the distance from control points to space that no depth camera has seen free.",
       "depthgrid");
-  app.set_version_flag("--version", std::string("depthgrid ") + depthgrid::app::kVersion);
+  app.set_version_flag("--version", std::string("depthgrid ") + depthgrid::program::kVersion);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   app.footer(
@@ -43,11 +43,11 @@ int run(int argc, char** argv) {
       "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"
       "  depthgrid distances ../shared/data/kinect3_ball --point hand=0.1,2.6,1.2 --in floor --frames 0:80:8\n"
       "'depthgrid COMMAND --help' explains a command. Exit codes: 0 done, 1 error, 2 broken command line.");
-  depthgrid::app::add_demo_command(app);
-  depthgrid::app::add_distances_command(app);
-  depthgrid::app::add_info_command(app);
-  depthgrid::app::add_map_command(app);
-  depthgrid::app::add_experiment_command(app);
+  depthgrid::program::add_demo_command(app);
+  depthgrid::program::add_distances_command(app);
+  depthgrid::program::add_info_command(app);
+  depthgrid::program::add_map_command(app);
+  depthgrid::program::add_experiment_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help and --version
@@ -57,7 +57,7 @@ int run(int argc, char** argv) {
       return report("there is no command '" + std::string(argv[1]) + "' (depthgrid --help lists them)", kUsage);
     }
     return report(std::string(error.what()) + " (depthgrid --help explains)", kUsage);
-  } catch (const depthgrid::app::UsageError& error) {
+  } catch (const depthgrid::program::UsageError& error) {
     return report(error.what(), kUsage);
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

@@ -7,7 +7,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace fs = std::filesystem;
 
@@ -59,4 +59,4 @@ void make_output_directory(const std::string& directory) {
   }
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

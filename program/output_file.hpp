@@ -8,7 +8,7 @@
 
 #include "depthgrid/files/file_replacement.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Text output to a file or, for "-", to standard output. A file is written beside its final name and renamed by
 /// commit(); without commit() (an error on the way) nothing is left behind.
@@ -24,11 +24,11 @@ class OutputFile {
 
  private:
   std::string path_;
-  std::optional<input::FileReplacement> replacement_;  ///< none: standard output
+  std::optional<files::FileReplacement> replacement_;  ///< none: standard output
   std::FILE* stream_ = stdout;
 };
 
 /// Creates `directory` unless it exists. Throws Error when its parent is missing or it is not a folder.
 void make_output_directory(const std::string& directory);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -7,7 +7,7 @@
 #include "depthgrid/core/sensor_models.hpp"
 #include "program/usage_error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<bool> clamp_beyond_far(const SensorOptions& options) {
   return sensor_model(*options.sensor).rule.clamp_beyond_far;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

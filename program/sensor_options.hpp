@@ -9,7 +9,7 @@
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/rig.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// As given; what is absent is the sensor model's, else the rig file's.
 struct SensorOptions {
@@ -48,4 +48,4 @@ std::optional<double> far_limit_m(const SensorOptions& options);
 /// limit is the model's, else nothing (the rig file's own).
 std::optional<bool> clamp_beyond_far(const SensorOptions& options);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

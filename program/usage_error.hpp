@@ -3,7 +3,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// A broken command line: the message names the option, the value and the rule.
 class UsageError : public Error {
@@ -20,4 +20,4 @@ template <class... Parts>
   throw UsageError(text.str());
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace depthgrid::app {
+namespace depthgrid::report {
 
 std::string exact_text(double value) {
   if (std::isnan(value)) {
@@ -27,4 +27,4 @@ std::string micro_text(double value) {
 
 std::string micro_text_down(double value) { return micro_text(std::floor(value * 1e6) / 1e6); }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::report

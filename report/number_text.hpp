@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace depthgrid::app {
+namespace depthgrid::report {
 
 /// The shortest text that reads back as the same double. NaN gives an empty text.
 std::string exact_text(double value);
@@ -14,4 +14,4 @@ std::string micro_text(double value);
 /// Six decimals, rounded towards minus infinity, so that a lower bound stays one. NaN gives an empty text.
 std::string micro_text_down(double value);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::report

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace depthgrid::app {
+namespace depthgrid::report {
 
 namespace {
 
@@ -54,4 +54,4 @@ void ProgressLine::update(std::size_t done) {
   last_shown_ = now;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::report

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-namespace depthgrid::app {
+namespace depthgrid::report {
 
 /// Writes to standard error, and only when that is a terminal, at most ten times a second. The line is erased at the
 /// end, so that it never mixes with results or errors. One thread only.
@@ -34,4 +34,4 @@ class ProgressLine {
 /// "12 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::report

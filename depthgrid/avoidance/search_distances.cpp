@@ -24,14 +24,14 @@ double age_of_images_s(double now_s, double reference_time_s) noexcept {
 
 }  // namespace
 
-SearchDistances::SearchDistances(const Rig& rig, const search::Settings& settings, std::size_t parts,
+SearchDistances::SearchDistances(const Rig& rig, const views::Settings& settings, std::size_t parts,
                                  const search::Budget& budget)
     : store_(rig, settings), budget_(budget), found_(parts) {}
 
 bool SearchDistances::take(std::span<const Frame> frames) noexcept {
   bool all = true;
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    all = store_.update(k, frames[k]) == search::UpdateResult::taken && all;
+    all = store_.update(k, frames[k]) == views::UpdateResult::taken && all;
   }
   return all;
 }
@@ -39,7 +39,7 @@ bool SearchDistances::take(std::span<const Frame> frames) noexcept {
 void SearchDistances::evaluate(std::span<const search::Primitive> parts_world, double now_s,
                                std::span<PartAnswer> answers) noexcept {
   const std::size_t count = std::min({parts_world.size(), answers.size(), found_.size()});
-  const search::Snapshot snapshot = store_.snapshot();
+  const views::Snapshot snapshot = store_.snapshot();
   const std::size_t led = std::min<std::size_t>(1, count);
   search_.hybrid(snapshot, parts_world.first(led), std::span(found_).first(led), share_of(budget_, true));
   search_.distances(snapshot, parts_world.subspan(led, count - led), std::span(found_).subspan(led, count - led),

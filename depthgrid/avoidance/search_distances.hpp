@@ -20,7 +20,7 @@ class SearchDistances final : public DistanceSource {
   /// `parts`: the most that evaluate() is asked for at a time. `budget`: of one evaluate(), a quarter of it for the end
   /// effector; where nodes are limited, end effector and other parts get one each at least. Parts beyond `parts` are
   /// not evaluated. Throws Error as ViewStore does.
-  SearchDistances(const Rig& rig, const search::Settings& settings, std::size_t parts,
+  SearchDistances(const Rig& rig, const views::Settings& settings, std::size_t parts,
                   const search::Budget& budget = {});
 
   [[nodiscard]] std::string_view name() const noexcept override { return "search"; }
@@ -33,7 +33,7 @@ class SearchDistances final : public DistanceSource {
   [[nodiscard]] std::int64_t stopped_by_budget() const noexcept { return stopped_; }
 
  private:
-  search::ViewStore store_;
+  views::ViewStore store_;
   search::Search search_;
   search::Budget budget_;
   std::vector<search::Answer> found_;

@@ -1,9 +1,9 @@
 // Sixteen numbers at once, or as many as the instruction set has. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_LANES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_LANES_INL
-#undef DEPTHGRID_SEARCH_LANES_INL
+#if defined(DEPTHGRID_CORE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_CORE_LANES_INL
+#undef DEPTHGRID_CORE_LANES_INL
 #else
-#define DEPTHGRID_SEARCH_LANES_INL
+#define DEPTHGRID_CORE_LANES_INL
 #endif
 
 #include <hwy/highway.h>
@@ -12,7 +12,7 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::lanes::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -42,7 +42,7 @@ HWY_INLINE V length(V x, V y, V z) { return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, 
 
 HWY_INLINE V clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::lanes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -9,7 +9,7 @@
 #include "depthgrid/files/number_parsing.hpp"
 #include "depthgrid/files/text_file.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 /// How many values of a row say what about a point.
@@ -204,4 +204,4 @@ ControlPoint parse_control_point(std::string_view text, const std::string& id) {
   return point_of(id, place, values);
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// A named point in metres, in the frame that its user says (world or floor). With a radius it is a sphere, with an end
 /// too a capsule: all points within the radius of the segment from p_m to end_m.
@@ -45,4 +45,4 @@ ControlPoints parse_control_points(std::string_view text, const std::string& nam
 /// Error as above.
 ControlPoint parse_control_point(std::string_view text, const std::string& id);
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

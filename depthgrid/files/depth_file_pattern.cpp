@@ -6,7 +6,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/files/rig_file.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
@@ -61,4 +61,4 @@ std::string depth_file_name(const std::string& pattern, int frame) {
   return name.replace(pattern.find('%'), conversion.size(), number);
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -13,7 +13,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using rapidjson::Value;
@@ -159,4 +159,4 @@ void check_schema(const rapidjson::Document& document, const rapidjson::Document
                    validator.GetInvalidSchemaKeyword()));
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

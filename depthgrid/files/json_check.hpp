@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// Parses strict JSON (UTF-8, no comments, no NaN). Throws Error with name, line and column, also where objects and
 /// arrays are nested deeper than 32.
@@ -20,4 +20,4 @@ void check_schema(const rapidjson::Document& document, const rapidjson::Document
 /// The value as one line of JSON, cut off after some 60 characters.
 std::string excerpt(const rapidjson::Value& value);
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

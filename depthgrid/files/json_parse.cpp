@@ -10,7 +10,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/files/json_check.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 constexpr int kDeepestNesting = 32;
@@ -122,4 +122,4 @@ rapidjson::Document parse_json(std::string_view text, const std::string& name) {
   return document;
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

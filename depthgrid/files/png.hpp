@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// A 16-bit gray image: row-major, no padding, pixel (u, v) at v * width_px + u.
 struct Gray16Image {
@@ -36,4 +36,4 @@ void write_png_gray8(const std::filesystem::path& file, int width_px, int height
 void write_png_rgb8(const std::filesystem::path& file, int width_px, int height_px,
                     std::span<const std::uint8_t> pixels);
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -15,7 +15,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/files/png.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 constexpr std::size_t kSignatureBytes = 8;
@@ -177,4 +177,4 @@ Gray16Image read_png16(const std::filesystem::path& file) {
   return image;
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -13,7 +13,7 @@
 #include "depthgrid/files/file_replacement.hpp"
 #include "depthgrid/files/png.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 struct Layout {
@@ -117,4 +117,4 @@ void write_png_rgb8(const std::filesystem::path& file, int width_px, int height_
             3, pixels.data());
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -7,7 +7,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 std::filesystem::path rig_path(const std::filesystem::path& path) {
@@ -112,4 +112,4 @@ std::span<const Frame> Recording::read(int index) {
   return frames_;
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

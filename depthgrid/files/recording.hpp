@@ -13,7 +13,7 @@
 #include "depthgrid/files/png.hpp"
 #include "depthgrid/files/rig_file.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// What to take of a recording.
 struct RecordingOptions {
@@ -63,4 +63,4 @@ class Recording {
   std::vector<Frame> frames_;
 };
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -13,7 +13,7 @@
 #include "depthgrid/files/rig_margins.hpp"
 #include "depthgrid/files/text_file.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using rapidjson::Value;
@@ -206,4 +206,4 @@ RigFile parse_rig(std::string_view text, const std::string& name) {
 
 RigFile load_rig(const std::filesystem::path& file) { return parse_rig(read_text_file(file), file.string()); }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

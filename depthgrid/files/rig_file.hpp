@@ -9,7 +9,7 @@
 
 #include "depthgrid/core/rig.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// A rig and where its recorded depth images are. In the file the principal point counts from the centre of the
 /// top-left pixel (OpenCV's convention); here, as everywhere in the library, from that pixel's edge: half a pixel more.
@@ -47,4 +47,4 @@ std::string depth_file_name(const std::string& pattern, int frame);
 /// The JSON schema (draft 4) that rig files are checked against: the text of docs/rig.schema.json.
 std::string_view rig_schema() noexcept;
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -10,7 +10,7 @@
 #include "depthgrid/files/file_replacement.hpp"
 #include "depthgrid/files/rig_file.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using JsonWriter = rapidjson::PrettyWriter<rapidjson::StringBuffer>;
@@ -204,4 +204,4 @@ void save_rig(const RigFile& rig_file, const std::filesystem::path& file) {
   target.commit();
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

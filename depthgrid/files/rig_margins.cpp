@@ -4,7 +4,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using rapidjson::Value;
@@ -59,4 +59,4 @@ std::optional<CameraMargins> margins_of(const Value& camera, const SensorModel* 
   return margins;
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -8,7 +8,7 @@
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// The sensor model that the entry names; null where it names none. Throws Error that lists the names there are.
 const SensorModel* sensor_of(const rapidjson::Value& camera);
@@ -18,4 +18,4 @@ const SensorModel* sensor_of(const rapidjson::Value& camera);
 std::optional<CameraMargins> margins_of(const rapidjson::Value& camera, const SensorModel* sensor,
                                         const RigCamera& calibrated);
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

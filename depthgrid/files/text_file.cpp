@@ -8,7 +8,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 std::string read_text_file(const std::filesystem::path& file) {
   const auto refuse = [&file](int system_error) {
@@ -31,4 +31,4 @@ std::string read_text_file(const std::filesystem::path& file) {
   return text;
 }
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 
 /// Throws Error that names the file and the system's reason when it is absent, a folder or cannot be read.
 std::string read_text_file(const std::filesystem::path& file);
 
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -13,6 +13,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 constexpr float kNever = -1e30F;
 /// A window of at most so many pixels a side is looked at pixel by pixel; larger ones by blocks first.
 constexpr int kFewPixels = 64;
@@ -171,7 +172,7 @@ bool scan_blocks(const LocalCamera& camera, const ScannedBall& ball, int level, 
   measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, j0, 1 << level, j1 - j0 + 1, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
   // The texel two levels down covers a block exactly.
-  const PyramidLevel& texels = camera.levels[level - 2];
+  const views::PyramidLevel& texels = camera.levels[level - 2];
   for (int j = j0; j <= j1; ++j) {
     const auto row = static_cast<std::size_t>(j - j0);
     const std::ptrdiff_t start = texels.offset + static_cast<std::ptrdiff_t>(4) * j * texels.width;

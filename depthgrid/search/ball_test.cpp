@@ -40,7 +40,7 @@ struct Ball {
 
   /// The two parts of a pixel's frustum that are not free, each less the robot's island.
   [[nodiscard]] bool meets_pixel(int u, int v) const noexcept {
-    const View& view = *camera.view;
+    const views::View& view = *camera.view;
     const auto free_m = static_cast<double>(view.free_m().at(u, v));
     const double start_m = free_m > camera.near_m ? free_m : camera.near_m;
     const Window pixel{u, v, u, v};
@@ -87,7 +87,7 @@ struct Ball {
   [[nodiscard]] double smallest(int level, int i, int j) const noexcept {
     if (level >= 2) {
       // The texel two levels down covers this block exactly.
-      const PyramidLevel& texels = camera.levels[level - 2];
+      const views::PyramidLevel& texels = camera.levels[level - 2];
       return static_cast<double>(camera.minima_m[texels.offset + 4 * j * texels.width + 4 * i]);
     }
     const int last_u = camera.view->width_px() - 1;

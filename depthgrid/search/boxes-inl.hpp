@@ -11,6 +11,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 
 /// Boxes, one a lane: centre and half sides along the world's axes.
 struct Boxes {

@@ -33,7 +33,7 @@ struct PixelWindow {
 
 /// One camera, and a point in its frame that it looks at.
 struct Sight {
-  const View& view;
+  const views::View& view;
   const SensorMargin& margin;
   const PinholeCamera& pinhole;
   Eigen::Vector3d p;
@@ -64,7 +64,7 @@ struct Sight {
   /// pyramid says which blocks have none. Stops at a measured one, which nothing outranks.
   void read_block(std::size_t level, int i, int j, const PixelWindow& window, int& pixels_left,
                   Look& known) const noexcept {
-    const PyramidLevel& texels = view.levels()[level];
+    const views::PyramidLevel& texels = view.levels()[level];
     const auto texel =
         static_cast<std::size_t>(4 * j) * static_cast<std::size_t>(texels.width) + static_cast<std::size_t>(4 * i);
     if (known.measured || pixels_left <= 0 ||
@@ -126,14 +126,14 @@ Look look_around(const Sight& sight, double near_m) noexcept {
 
 }  // namespace
 
-Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world) noexcept {
+Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& x_world) noexcept {
   Classification result;
   double nearest_camera_m = std::numeric_limits<double>::infinity();
   bool occluded = false;
   bool unmeasured = false;
   bool looks = false;
   for (std::size_t k = 0; k < snapshot.camera_count(); ++k) {
-    const View& view = snapshot.view(k);
+    const views::View& view = snapshot.view(k);
     const RigCamera& camera = snapshot.camera(k);
     const Pose& T_world_camera = snapshot.T_world_camera(k);
     const Eigen::Vector3d x = T_world_camera.linear().transpose() * (x_world - T_world_camera.translation());

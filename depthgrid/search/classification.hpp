@@ -20,6 +20,6 @@ struct Classification {
 /// behind a measured pixel of a camera that looks there; else unmeasured: a camera looks there without measurement, or
 /// so near the image's edge that the filter or the ball leaves the image, or the ball reaches its blind zone; else
 /// unobserved.
-[[nodiscard]] Classification classify(const Snapshot& snapshot, const Eigen::Vector3d& x_world) noexcept;
+[[nodiscard]] Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& x_world) noexcept;
 
 }  // namespace depthgrid::search

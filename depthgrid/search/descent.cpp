@@ -23,13 +23,13 @@ float float_above(double value) noexcept { return std::nextafter(static_cast<flo
 
 }  // namespace
 
-Descent::Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
+Descent::Descent(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
     : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
   query_.camera_count = snapshot.camera_count();
-  for (std::size_t k = 0; k < kMostCameras; ++k) {
+  for (std::size_t k = 0; k < views::kMostCameras; ++k) {
     query_.order[k] = static_cast<std::uint8_t>(k);
   }
-  query_.uncovered_ignored = settings_.policies.unobserved == Policy::ignored;
+  query_.uncovered_ignored = settings_.policies.unobserved == views::Policy::ignored;
   query_.slack_m = float_below(settings_.resolution_m - 1e-5);
   least_reach_m_ = 1e30;
   for (std::size_t k = 0; k < query_.camera_count; ++k) {
@@ -88,7 +88,7 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
 
   query_.boxed = false;
   query_.principal = -1;
-  if (const auto* box = std::get_if<BoxSpace>(&settings_.space)) {
+  if (const auto* box = std::get_if<views::BoxSpace>(&settings_.space)) {
     space_low_ = box->low_world - origin_world_;
     space_high_ = box->high_world - origin_world_;
     const Eigen::Vector3d middle = middle_world - origin_world_;
@@ -99,7 +99,7 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
       query_.box_high[i] = float_above(space_high_[static_cast<Eigen::Index>(i)]);
     }
   } else {
-    const auto& frustum = std::get<FrustumSpace>(settings_.space);
+    const auto& frustum = std::get<views::FrustumSpace>(settings_.space);
     query_.principal = static_cast<int>(frustum.principal);
     query_.d_min_m = float_below(frustum.d_min_m);
     query_.d_max_m = float_above(frustum.d_max_m);
@@ -122,7 +122,7 @@ bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
     return true;  // boxes are cut to W
   }
   const LocalCamera& camera = query_.cameras[static_cast<std::size_t>(query_.principal)];
-  const auto& frustum = std::get<FrustumSpace>(settings_.space);
+  const auto& frustum = std::get<views::FrustumSpace>(settings_.space);
   const Eigen::Vector3d x = camera.to_camera(x_local);
   return x.z() > 0 && x.z() >= frustum.d_min_m && x.z() <= frustum.d_max_m && projects_inside(camera.pinhole, x);
 }

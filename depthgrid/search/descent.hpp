@@ -27,7 +27,7 @@ struct Nearest {
 /// The search on one snapshot, for groups of primitives that are near to each other: their cubes are tested once.
 class Descent {
  public:
-  Descent(const Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept;
+  Descent(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept;
 
   /// Starts a group around a place; extent_m: how far from it the axes and what is of interest around them reach.
   void aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept;
@@ -73,8 +73,8 @@ class Descent {
                                         std::array<double, kGroup>& total) const noexcept;
   void stop(std::uint32_t primitives, double at_m) noexcept;
 
-  const Snapshot& snapshot_;
-  const Settings& settings_;
+  const views::Snapshot& snapshot_;
+  const views::Settings& settings_;
   CubeQuery& query_;
   Frontier& frontier_;
   Count& count_;

@@ -12,10 +12,10 @@ bool may_have_islands(const LocalCamera& camera, float u_low, float u_high, floa
     return false;
   }
   const auto pixel = [](float at, float size) { return static_cast<int>(std::clamp(at, 0.0F, size - 1)); };
-  const PixelRange columns{pixel(u_low, camera.width), pixel(u_high, camera.width) + 1};
-  const int last = pixel(v_high, camera.height) / View::kBandRows;
-  for (int band = pixel(v_low, camera.height) / View::kBandRows; band <= last; ++band) {
-    if (!common(columns, camera.island_bands[band]).empty()) {
+  const views::PixelRange columns{pixel(u_low, camera.width), pixel(u_high, camera.width) + 1};
+  const int last = pixel(v_high, camera.height) / views::View::kBandRows;
+  for (int band = pixel(v_low, camera.height) / views::View::kBandRows; band <= last; ++band) {
+    if (!views::common(columns, camera.island_bands[band]).empty()) {
       return true;
     }
   }

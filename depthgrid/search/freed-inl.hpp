@@ -79,7 +79,7 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
                                    V z_high) {
   const Floats d;
   const Ints di;
-  const View& view = *camera.view;
+  const views::View& view = *camera.view;
   const M near_blind = hn::Le(z_low, hn::Set(d, camera.blind_m));
   const I width = hn::Set(di, camera.width_px);
   for (int j = 0; j < side; ++j) {
@@ -104,7 +104,7 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
 /// Lanes of `left` that lie in islands in every texel.
 HWY_INLINE M island_texels(const LocalCamera& camera, M left, const Footprint& at, V z_low, V z_high) {
   const Floats d;
-  const View& view = *camera.view;
+  const views::View& view = *camera.view;
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
   left = hn::And(left, hn::Ge(z_low, extremum(camera, at, view.island_near_maxima_m(), max)));

@@ -21,9 +21,9 @@ Clip view_between(double d_min_m, double d_max_m) noexcept {
 
 }  // namespace
 
-void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world, double extent_m,
-                LocalCamera& local) noexcept {
-  const View& view = snapshot.view(camera);
+void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world,
+                double extent_m, LocalCamera& local) noexcept {
+  const views::View& view = snapshot.view(camera);
   const RigCamera& rig_camera = snapshot.camera(camera);
   const Pose& T_world_camera = snapshot.T_world_camera(camera);
   local.view = &view;
@@ -69,13 +69,13 @@ void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vecto
   local.level_count = static_cast<int>(view.levels().size());
   local.texels[0] = {0, view.width_px(), 0, 0};
   for (int level = 0; level < local.level_count && level + 1 < static_cast<int>(local.texels.size()); ++level) {
-    const PyramidLevel& from = view.levels()[static_cast<std::size_t>(level)];
+    const views::PyramidLevel& from = view.levels()[static_cast<std::size_t>(level)];
     local.texels[static_cast<std::size_t>(level) + 1] = {from.offset, from.width, level, 3};
   }
   local.width_px = view.width_px();
   local.has_islands = view.has_islands();
   local.island_bands = view.island_bands();
-  const auto* frustum = std::get_if<FrustumSpace>(&snapshot.settings().space);
+  const auto* frustum = std::get_if<views::FrustumSpace>(&snapshot.settings().space);
   const bool is_principal = frustum != nullptr && frustum->principal == camera;
   local.space = is_principal && !local.has_reach ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};
   // Covered is what lies beyond the blind zone, its end excluded.

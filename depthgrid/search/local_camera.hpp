@@ -45,9 +45,9 @@ struct LocalCamera {
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
   std::array<Texels, kMostTexels> texels{};
-  const PyramidLevel* levels = nullptr;
+  const views::PyramidLevel* levels = nullptr;
   int level_count = 0;
-  const PixelRange* island_bands = nullptr;  ///< as of the view
+  const views::PixelRange* island_bands = nullptr;  ///< as of the view
   int width_px = 0;
   bool has_reach = false;
   bool has_islands = false;
@@ -63,7 +63,7 @@ struct LocalCamera {
   PinholeCamera pinhole;
   double near_m = 0;
   PoseMargin pose_margin;
-  const View* view = nullptr;
+  const views::View* view = nullptr;
 
   [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& x_local) const noexcept {
     return R_camera_world * x_local + offset_camera_m;
@@ -75,7 +75,7 @@ struct LocalCamera {
 };
 
 /// Everything of `snapshot` relative to origin_world, for points within extent_m of it.
-void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world, double extent_m,
-                LocalCamera& local) noexcept;
+void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world,
+                double extent_m, LocalCamera& local) noexcept;
 
 }  // namespace depthgrid::search

@@ -38,9 +38,9 @@ struct Search::Plan {
 struct Search::State {
   State() : frontier(kFrontierCapacity) {}
 
-  void call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+  void call(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
             const Budget& budget, Count* count, bool with_direction) noexcept;
-  void group(const Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
+  void group(const views::Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
              Allowance& allowance, bool with_direction) noexcept;
 
   CubeQuery query;
@@ -50,14 +50,14 @@ struct Search::State {
 };
 
 /// Fills in what needs no search. False when that is all there is to say.
-bool Search::plan(const Snapshot& snapshot, const Primitive& primitive, Answer& result, Plan& plan) noexcept {
+bool Search::plan(const views::Snapshot& snapshot, const Primitive& primitive, Answer& result, Plan& plan) noexcept {
   result = Answer{};
   if (!is_valid(primitive)) {
     return false;
   }
   Proximity& nearest = result.nearest;
   nearest.stale = snapshot.stale();
-  const Settings& s = snapshot.settings();
+  const views::Settings& s = snapshot.settings();
   // W is convex: of a segment's distances to its border the least is at an end.
   const Border at_a = border_of_space(snapshot, primitive.a_world);
   const Border at_b = border_of_space(snapshot, primitive.b_world);
@@ -65,7 +65,7 @@ bool Search::plan(const Snapshot& snapshot, const Primitive& primitive, Answer& 
   plan.primitive = primitive;
   plan.border = a_first ? at_a : at_b;
   plan.border_axis = a_first ? primitive.a_world : primitive.b_world;
-  const bool outside_counts = s.policies.outside == Policy::obstacle;
+  const bool outside_counts = s.policies.outside == views::Policy::obstacle;
   if (!(plan.border.distance_m >= 0)) {
     nearest.state = ProximityState::outside;
     if (outside_counts) {
@@ -86,7 +86,7 @@ bool Search::plan(const Snapshot& snapshot, const Primitive& primitive, Answer& 
 }
 
 /// Turns what the search found into the answer.
-void Search::finish(const Snapshot& snapshot, const Plan& plan, const Nearest& found,
+void Search::finish(const views::Snapshot& snapshot, const Plan& plan, const Nearest& found,
                     const Eigen::Vector3d& origin_world, Answer& result) noexcept {
   Proximity& nearest = result.nearest;
   nearest.budget = found.stopped;
@@ -116,7 +116,7 @@ void Search::finish(const Snapshot& snapshot, const Plan& plan, const Nearest& f
   }
 }
 
-void Search::State::group(const Snapshot& snapshot, std::span<const Plan> group_plans, std::span<Answer> answers,
+void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan> group_plans, std::span<Answer> answers,
                           Descent& descent, Allowance& allowance, bool with_direction) noexcept {
   const double rho_m = snapshot.settings().rho_m;
   Eigen::Vector3d low = group_plans.front().primitive.a_world;
@@ -154,8 +154,8 @@ void Search::State::group(const Snapshot& snapshot, std::span<const Plan> group_
   }
 }
 
-void Search::State::call(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
-                         const Budget& budget, Count* count, bool with_direction) noexcept {
+void Search::State::call(const views::Snapshot& snapshot, std::span<const Primitive> primitives,
+                         std::span<Answer> answers, const Budget& budget, Count* count, bool with_direction) noexcept {
   Count own;
   Descent descent(snapshot, query, frontier, count != nullptr ? *count : own);
   std::int64_t nodes_left = budget.nodes > 0 ? budget.nodes : std::numeric_limits<std::int64_t>::max();
@@ -206,12 +206,12 @@ Search::~Search() = default;
 Search::Search(Search&&) noexcept = default;
 Search& Search::operator=(Search&&) noexcept = default;
 
-void Search::distances(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
-                       const Budget& budget, Count* count) noexcept {
+void Search::distances(const views::Snapshot& snapshot, std::span<const Primitive> primitives,
+                       std::span<Answer> answers, const Budget& budget, Count* count) noexcept {
   state_->call(snapshot, primitives, answers, budget, count, false);
 }
 
-void Search::hybrid(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+void Search::hybrid(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
                     const Budget& budget, Count* count) noexcept {
   state_->call(snapshot, primitives, answers, budget, count, true);
 }

@@ -68,19 +68,19 @@ class Search {
   /// Distances of many primitives. answers.size() should equal primitives.size(); answers without a primitive, and
   /// those of primitives that are not finite or have a negative radius, are not_evaluated. Primitives beside each
   /// other in the call that are near to each other are searched together. Does not allocate, lock or throw.
-  void distances(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+  void distances(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
                  const Budget& budget = {}, Count* count = nullptr) noexcept;
 
   /// The same with hybrid_direction_world, equation (11) in its corrected form.
-  void hybrid(const Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+  void hybrid(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
               const Budget& budget = {}, Count* count = nullptr) noexcept;
 
  private:
   struct State;
   struct Plan;
-  [[nodiscard]] static bool plan(const Snapshot& snapshot, const Primitive& primitive, Answer& result,
+  [[nodiscard]] static bool plan(const views::Snapshot& snapshot, const Primitive& primitive, Answer& result,
                                  Plan& plan) noexcept;
-  static void finish(const Snapshot& snapshot, const Plan& plan, const Nearest& found,
+  static void finish(const views::Snapshot& snapshot, const Plan& plan, const Nearest& found,
                      const Eigen::Vector3d& origin_world, Answer& result) noexcept;
   std::unique_ptr<State> state_;
 };

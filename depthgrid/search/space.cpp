@@ -25,10 +25,10 @@ Border nearest_plane(const std::array<Plane, 6>& planes, const Eigen::Vector3d& 
 
 }  // namespace
 
-Border border_of_space(const Snapshot& snapshot, const Eigen::Vector3d& p_world) noexcept {
-  const Settings& settings = snapshot.settings();
+Border border_of_space(const views::Snapshot& snapshot, const Eigen::Vector3d& p_world) noexcept {
+  const views::Settings& settings = snapshot.settings();
   using V = Eigen::Vector3d;
-  if (const auto* box = std::get_if<BoxSpace>(&settings.space)) {
+  if (const auto* box = std::get_if<views::BoxSpace>(&settings.space)) {
     return nearest_plane({{{V(-1, 0, 0), -box->low_world.x()},
                            {V(1, 0, 0), box->high_world.x()},
                            {V(0, -1, 0), -box->low_world.y()},
@@ -37,7 +37,7 @@ Border border_of_space(const Snapshot& snapshot, const Eigen::Vector3d& p_world)
                            {V(0, 0, 1), box->high_world.z()}}},
                          p_world);
   }
-  const auto& frustum = std::get<FrustumSpace>(settings.space);
+  const auto& frustum = std::get<views::FrustumSpace>(settings.space);
   const Pose& T_world_camera = snapshot.T_world_camera(frustum.principal);
   const PinholeCamera& c = snapshot.camera(frustum.principal).intrinsics;
   const V p = T_world_camera.linear().transpose() * (p_world - T_world_camera.translation());

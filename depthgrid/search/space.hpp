@@ -14,6 +14,6 @@ struct Border {
 };
 
 /// From the point p to the border of the snapshot's W. World frame, metres.
-[[nodiscard]] Border border_of_space(const Snapshot& snapshot, const Eigen::Vector3d& p_world) noexcept;
+[[nodiscard]] Border border_of_space(const views::Snapshot& snapshot, const Eigen::Vector3d& p_world) noexcept;
 
 }  // namespace depthgrid::search

@@ -1,9 +1,9 @@
 // The minimum filter over 16-bit codes, for margins that ascend. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_CODE_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_CODE_ROWS_INL
-#undef DEPTHGRID_SEARCH_CODE_ROWS_INL
+#if defined(DEPTHGRID_VIEWS_CODE_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_CODE_ROWS_INL
+#undef DEPTHGRID_VIEWS_CODE_ROWS_INL
 #else
-#define DEPTHGRID_SEARCH_CODE_ROWS_INL
+#define DEPTHGRID_VIEWS_CODE_ROWS_INL
 #endif
 
 #include <hwy/highway.h>
@@ -15,7 +15,7 @@
 #include "depthgrid/views/vector_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 
 /// Minima of codes along the row. kReach is w, or 0 where it is not known here.
 template <int kReach>
@@ -103,7 +103,7 @@ HWY_INLINE void narrow_columns(const Reading& reading, const std::uint16_t* cons
   }
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

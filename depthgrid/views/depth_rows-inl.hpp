@@ -1,9 +1,9 @@
 // The minimum filter in single precision. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_DEPTH_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_DEPTH_ROWS_INL
-#undef DEPTHGRID_SEARCH_DEPTH_ROWS_INL
+#if defined(DEPTHGRID_VIEWS_DEPTH_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_DEPTH_ROWS_INL
+#undef DEPTHGRID_VIEWS_DEPTH_ROWS_INL
 #else
-#define DEPTHGRID_SEARCH_DEPTH_ROWS_INL
+#define DEPTHGRID_VIEWS_DEPTH_ROWS_INL
 #endif
 
 #include <hwy/highway.h>
@@ -17,7 +17,7 @@
 #include "depthgrid/views/vector_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 
 /// Reduced depths of one row: D - m(D), or the robot's exit where the reading lies in the robot. `values` are codes or
 /// metres.
@@ -102,7 +102,7 @@ HWY_INLINE void first_level_row(PreparationRows& rows, const PixelRange& columns
   }
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -18,7 +18,7 @@
 #include "depthgrid/views/vector_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 
 /// The passes over one image. Rows are taken in as soon as the next ones need them. kReach is w, or 0 where it is not
 /// known here.
@@ -170,11 +170,11 @@ PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRow
                                                          : prepare_as<false>(reading, image, rows, result);
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 HWY_EXPORT(prepare);
 
@@ -183,5 +183,5 @@ PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRow
   return HWY_DYNAMIC_DISPATCH(prepare)(reading, image, rows, result);
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views
 #endif

@@ -13,7 +13,7 @@
 #include "depthgrid/views/reading.hpp"
 #include "depthgrid/views/view.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// What is read.
 struct NewImage {
@@ -40,4 +40,4 @@ struct PreparedImage {
 PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows,
                    const PreparedImage& result) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Columns or rows [begin, end); without an argument none.
 struct PixelRange {
@@ -24,4 +24,4 @@ struct PixelRange {
   return both.empty() ? PixelRange{} : both;
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

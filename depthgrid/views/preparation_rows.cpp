@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 FloatColumns::FloatColumns(int width_px, int height_px, int reach_px)
     : width_px_(width_px), height_px_(height_px), reach_px_(reach_px), robot_(static_cast<std::size_t>(height_px)) {}
@@ -46,4 +46,4 @@ PreparationRows::PreparationRows(int width_px, int height_px, int reach_px)
   wide_.fill(kInfinite, std::numeric_limits<float>::infinity());
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

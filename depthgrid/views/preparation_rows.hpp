@@ -10,7 +10,7 @@
 #include "depthgrid/core/aligned_vector.hpp"
 #include "depthgrid/views/pixel_range.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// The columns of each row that are worked out in single precision because of the robot, w being the reach of the
 /// filter. All begin and end at multiples of kStep, or at the image's border, so that they do not depend on the length
@@ -128,4 +128,4 @@ class PreparationRows {
   ScratchRows<float> wide_;
 };
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

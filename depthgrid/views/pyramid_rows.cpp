@@ -9,7 +9,7 @@
 #include "depthgrid/views/vector_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 
 /// Every second value of two vectors one behind the other.
 HWY_INLINE V even_lanes(V left, [[maybe_unused]] V right) {
@@ -165,11 +165,11 @@ void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float*
   }
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 HWY_EXPORT(minimum_rows_above);
 HWY_EXPORT(build_island_pyramids);
@@ -193,5 +193,5 @@ std::size_t row_count(const std::vector<PyramidLevel>& levels) noexcept {
   return count;
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views
 #endif

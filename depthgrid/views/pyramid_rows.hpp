@@ -7,7 +7,7 @@
 #include "depthgrid/views/preparation_rows.hpp"
 #include "depthgrid/views/view.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Row j of level 0 of a pyramid of minima is written: writes the rows of the levels above that were waiting for it.
 /// `scratch` is a row of PreparationRows. Rows of level 0 come in their order.
@@ -23,4 +23,4 @@ void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float*
                            const std::vector<PixelRange>& image_columns, float* scratch, float* near_maxima_m,
                            float* far_minima_m, std::vector<PixelRange>& texel_columns) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

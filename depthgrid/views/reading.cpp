@@ -6,7 +6,7 @@
 
 #include "depthgrid/views/rounding.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
@@ -81,4 +81,4 @@ Reading::Reading(const MeasurementRule& rule, double metres_per_unit_in, const S
   }
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

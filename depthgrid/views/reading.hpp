@@ -8,7 +8,7 @@
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/margin.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// x (slope - curve x) - constant in single precision, one rounding an operation, is never above D - m(D) of the depth
 /// D that x stands for, and below it by less than 2^-20 D. Without any margin the result for metres is x itself.
@@ -46,4 +46,4 @@ struct Reading {
   Reduction of_metres;
 };
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -1,10 +1,10 @@
 // What a pixel's stored value stands for, a vector at a time (see Reading). Included once for each instruction set.
 // Internal.
-#if defined(DEPTHGRID_SEARCH_READING_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_READING_ROWS_INL
-#undef DEPTHGRID_SEARCH_READING_ROWS_INL
+#if defined(DEPTHGRID_VIEWS_READING_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_READING_ROWS_INL
+#undef DEPTHGRID_VIEWS_READING_ROWS_INL
 #else
-#define DEPTHGRID_SEARCH_READING_ROWS_INL
+#define DEPTHGRID_VIEWS_READING_ROWS_INL
 #endif
 
 #include <hwy/highway.h>
@@ -16,7 +16,7 @@
 #include "depthgrid/views/vector_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 
 using FewUnits = hn::Rebind<std::uint16_t, Floats>;
 using Units = hn::CappedTag<std::uint16_t, 32>;
@@ -122,7 +122,7 @@ HWY_INLINE void decode_row(const Reading& reading, const std::uint16_t* HWY_REST
   });
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

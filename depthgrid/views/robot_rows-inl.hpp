@@ -1,10 +1,10 @@
 // The robot in the rows of an image: where it is, and what is free up to behind it. Included once for each instruction
 // set. Internal.
-#if defined(DEPTHGRID_SEARCH_ROBOT_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_ROBOT_ROWS_INL
-#undef DEPTHGRID_SEARCH_ROBOT_ROWS_INL
+#if defined(DEPTHGRID_VIEWS_ROBOT_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_ROBOT_ROWS_INL
+#undef DEPTHGRID_VIEWS_ROBOT_ROWS_INL
 #else
-#define DEPTHGRID_SEARCH_ROBOT_ROWS_INL
+#define DEPTHGRID_VIEWS_ROBOT_ROWS_INL
 #endif
 
 #include <hwy/highway.h>
@@ -16,7 +16,7 @@
 #include "depthgrid/views/vector_rows-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 
 /// Where a row shows the robot.
 HWY_INLINE PixelRange robot_columns(const NewImage& image, int v) {
@@ -74,7 +74,7 @@ HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& colum
   return !islands.empty();
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

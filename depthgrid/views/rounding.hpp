@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// The largest float that is not above the value; values beyond all finite floats count as the outermost of these.
 inline float rounded_down(double value) noexcept {
@@ -17,4 +17,4 @@ inline float rounded_down(double value) noexcept {
 /// The smallest float that is not below the value, likewise.
 inline float rounded_up(double value) noexcept { return -rounded_down(-value); }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -5,7 +5,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr const char* kName = "search settings: ";
@@ -121,4 +121,4 @@ void validate(const Settings& settings, const Rig& rig) {
   check_within("repulsion_alpha", settings.repulsion_alpha, 0, kLargestAlpha, "");
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

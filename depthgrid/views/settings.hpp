@@ -10,7 +10,7 @@
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/rig.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Most cameras of one rig.
 inline constexpr std::size_t kMostCameras = 16;
@@ -45,8 +45,6 @@ struct Policies {
   double ignored_pocket_m = 0;
 };
 
-using depthgrid::CameraMargins;
-
 struct Settings {
   std::variant<std::monostate, FrustumSpace, BoxSpace> space;  ///< W; has to be set
   Policies policies;
@@ -64,4 +62,4 @@ struct Settings {
 /// Throws Error with value, rule and hint unless every part is set and in range for this rig.
 void validate(const Settings& settings, const Rig& rig);
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -1,9 +1,9 @@
 // Rows of an image, a vector at a time. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_VECTOR_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_VECTOR_ROWS_INL
-#undef DEPTHGRID_SEARCH_VECTOR_ROWS_INL
+#if defined(DEPTHGRID_VIEWS_VECTOR_ROWS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_VECTOR_ROWS_INL
+#undef DEPTHGRID_VIEWS_VECTOR_ROWS_INL
 #else
-#define DEPTHGRID_SEARCH_VECTOR_ROWS_INL
+#define DEPTHGRID_VIEWS_VECTOR_ROWS_INL
 #endif
 
 #include <hwy/highway.h>
@@ -18,7 +18,8 @@
 #include "depthgrid/views/preparation_rows.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
+using namespace lanes::HWY_NAMESPACE;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
 constexpr int kLargestReach = 16;  ///< as validate() of SensorMargin has it
@@ -156,7 +157,7 @@ HWY_INLINE void window_row(const Extremum& extremum, const float* row, int width
   }
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -9,7 +9,7 @@
 #include "depthgrid/views/reading.hpp"
 #include "depthgrid/views/rounding.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -189,4 +189,4 @@ bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
   return true;
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

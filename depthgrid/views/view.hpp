@@ -13,7 +13,7 @@
 #include "depthgrid/views/pixel_range.hpp"
 #include "depthgrid/views/settings.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Overlapping extrema of an image: texel (i, j) of level L covers the pixels [i 2^L, (i + 4) 2^L) x
 /// [j 2^L, (j + 4) 2^L) of the image. So a rectangle of pixels whose last and first texel columns (pixel >> L) differ
@@ -102,4 +102,4 @@ class View {
   bool present_ = false;
 };
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -9,7 +9,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr int kMostHeld = 13;
@@ -83,7 +83,7 @@ struct ViewStore::State {
 
   State(const Rig& rig_in, Settings settings_in, int held_snapshots)
       : rig(checked(rig_in)), settings(std::move(settings_in)), cameras(rig.cameras.size()) {
-    search::validate(settings, rig);
+    views::validate(settings, rig);
     if (held_snapshots < 1 || held_snapshots > kMostHeld) {
       fail("view store: held_snapshots is ", held_snapshots, ", must be between 1 and ", kMostHeld);
     }
@@ -246,4 +246,4 @@ const PoseMargin& Snapshot::pose_margin(std::size_t camera) const noexcept { ret
 const RigCamera& Snapshot::camera(std::size_t camera) const noexcept { return state_->rig.cameras[camera]; }
 const Settings& Snapshot::settings() const noexcept { return state_->settings; }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

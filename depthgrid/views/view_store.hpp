@@ -10,7 +10,7 @@
 #include "depthgrid/views/settings.hpp"
 #include "depthgrid/views/view.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 class Snapshot;
 
@@ -91,4 +91,4 @@ class Snapshot {
   bool stale_ = false;
 };
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

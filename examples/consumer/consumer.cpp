@@ -13,31 +13,31 @@
 namespace search = depthgrid::search;
 
 int main() try {
-  const depthgrid::input::RigFile file = depthgrid::input::parse_rig(R"({
+  const depthgrid::files::RigFile file = depthgrid::files::parse_rig(R"({
     "name": "cell", "depth": {"metres_per_unit": 0.001}, "cameras": [{
       "id": "front", "width": 320, "height": 240, "fx": 260.0, "fy": 260.0, "cx": 159.5, "cy": 119.5,
       "sensor": "ideal",
       "T_world_cam": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]})",
                                                                      "rig in consumer.cpp");
-  search::Settings settings;
-  settings.space = search::BoxSpace{{-0.5, -0.5, 0.5}, {0.5, 0.5, 2.5}};
-  settings.policies.unobserved = search::Policy::obstacle;
-  settings.policies.outside = search::Policy::ignored;
-  settings.policies.robot_pockets = search::Policy::obstacle;
+  views::Settings settings;
+  settings.space = views::BoxSpace{{-0.5, -0.5, 0.5}, {0.5, 0.5, 2.5}};
+  settings.policies.unobserved = views::Policy::obstacle;
+  settings.policies.outside = views::Policy::ignored;
+  settings.policies.robot_pockets = views::Policy::obstacle;
   settings.margins = depthgrid::camera_margins(file.rig);
   settings.v_max_m_s = 2.0;
-  search::ViewStore store(file.rig, settings);
+  views::ViewStore store(file.rig, settings);
   search::Search search;
 
   const std::vector<std::uint16_t> pixels(320 * 240, 2000);  // a wall at 2 m
   depthgrid::Frame frame;
   frame.depth = depthgrid::depth_view(pixels, 320, 240, file.rig.cameras[0].metres_per_unit);
-  if (store.update(0, frame) != search::UpdateResult::taken) {
+  if (store.update(0, frame) != views::UpdateResult::taken) {
     const char* reason = store.why_unusable(0, frame);
     throw std::runtime_error(reason != nullptr ? reason : "all buffers are held");
   }
 
-  const depthgrid::input::ControlPoint point = depthgrid::input::parse_control_point("0,0,1.8", "wrist");
+  const depthgrid::files::ControlPoint point = depthgrid::files::parse_control_point("0,0,1.8", "wrist");
   const search::Primitive wrist = search::point(point.p_m);
   search::Answer answer;
   search.distances(store.snapshot(), {&wrist, 1}, {&answer, 1});

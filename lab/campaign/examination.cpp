@@ -7,7 +7,7 @@
 
 #include "reference/search_problem_run.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 using reference::AnswerCheck;
@@ -34,8 +34,8 @@ bool sees_robot(const Frame& frame) {
 
 /// The rows in which the problem's queries count, less the primitives'.
 std::vector<std::string> kinds_of(const SearchProblem& problem) {
-  const search::Settings& s = problem.settings;
-  std::vector<std::string> kinds{"all", std::holds_alternative<search::BoxSpace>(s.space) ? "W a box" : "W a view",
+  const views::Settings& s = problem.settings;
+  std::vector<std::string> kinds{"all", std::holds_alternative<views::BoxSpace>(s.space) ? "W a box" : "W a view",
                                  cameras_of(problem), sensor_of(problem)};
   const auto add_if = [&kinds](bool so, const char* kind) {
     if (so) {
@@ -49,9 +49,9 @@ std::vector<std::string> kinds_of(const SearchProblem& problem) {
   add_if(any_frame([](const Frame& frame) { return frame.depth.data == nullptr; }), "an image missing");
   add_if(problem.moved, "moved cameras");
   add_if(s.v_max_m_s > 0, "time skew");
-  add_if(s.policies.unobserved == search::Policy::ignored, "unobserved ignored");
-  add_if(s.policies.outside == search::Policy::obstacle, "outside an obstacle");
-  add_if(s.policies.robot_pockets == search::Policy::ignored, "robot pockets ignored");
+  add_if(s.policies.unobserved == views::Policy::ignored, "unobserved ignored");
+  add_if(s.policies.outside == views::Policy::obstacle, "outside an obstacle");
+  add_if(s.policies.robot_pockets == views::Policy::ignored, "robot pockets ignored");
   return kinds;
 }
 
@@ -189,4 +189,4 @@ void examine(std::uint64_t seed, const std::string& code, Tally& tally) {
   tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include "lab/campaign/tally.hpp"
 #include "reference/search_problem.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 inline constexpr int kQueriesPerProblem = 64;
 
@@ -18,4 +18,4 @@ void examine(std::uint64_t seed, const std::string& code, Tally& tally);
 /// The part of it that looks at the answers of an unlimited call.
 void examine_answers(const reference::SearchProblem& problem, std::span<const search::Answer> answers, Tally& tally);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 void LogHistogram::add(double value) {
   const double bin = value > kLowest ? 1 + std::floor(kBinsPerDecade * std::log10(value / kLowest)) : 0;
@@ -42,4 +42,4 @@ LogHistogram LogHistogram::from(const std::array<std::int64_t, kBins>& bins, dou
   return result;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// 20 bins a decade from 1e-6 to 100: quantiles are at most 12 % too large, the maximum is exact.
 class LogHistogram {
@@ -29,4 +29,4 @@ class LogHistogram {
   double maximum_ = 0;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

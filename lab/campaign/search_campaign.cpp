@@ -14,7 +14,7 @@
 namespace {
 
 using namespace depthgrid;
-using namespace depthgrid::bench;
+using namespace depthgrid::lab;
 using reference::Fault;
 
 constexpr double kSaveS = 10;

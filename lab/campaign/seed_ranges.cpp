@@ -5,7 +5,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 void SeedRanges::add(std::uint64_t first, std::uint64_t end) {
   if (first >= end) {
@@ -46,4 +46,4 @@ std::uint64_t SeedRanges::count(std::uint64_t first, std::uint64_t end) const {
   return count;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <map>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// A set of seeds, kept as ranges. Ranges that touch become one.
 class SeedRanges {
@@ -23,4 +23,4 @@ class SeedRanges {
   std::map<std::uint64_t, std::uint64_t> ranges_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -9,7 +9,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// 1234567 as "1 234 567".
@@ -121,4 +121,4 @@ void write_tables(const std::string& page, const std::string& tables) {
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 
 #include "lab/campaign/state_file.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// The tables, as Markdown.
 [[nodiscard]] std::string soundness_tables(const CampaignState& state);
@@ -17,4 +17,4 @@ void write_tables(const std::string& page, const std::string& tables);
 inline constexpr const char* kTablesBegin = "<!-- tables, written by depthgrid_search_campaign -->";
 inline constexpr const char* kTablesEnd = "<!-- end of the tables -->";
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -12,7 +12,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/file_target.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 using Writer = rapidjson::PrettyWriter<rapidjson::OStreamWrapper>;
@@ -208,4 +208,4 @@ CampaignState read_state(const std::string& file) {
   return state;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 
 #include "lab/campaign/tally.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct CampaignState {
   std::map<int, Tally> tallies;  ///< by width_px
@@ -23,4 +23,4 @@ void write_state(const std::string& file, const CampaignState& state);
 /// Throws Error when the file cannot be read or is no such state.
 [[nodiscard]] CampaignState read_state(const std::string& file);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 Row& operator+=(Row& row, const Row& other) {
@@ -57,4 +57,4 @@ std::int64_t Tally::faults(reference::Fault fault) const {
   return all != rows.end() ? all->second.faults.at(static_cast<std::size_t>(fault)) : 0;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -11,7 +11,7 @@
 #include "lab/campaign/seed_ranges.hpp"
 #include "reference/answer_check.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Answers of one kind of question.
 struct Row {
@@ -41,4 +41,4 @@ struct Tally {
   [[nodiscard]] std::int64_t faults(reference::Fault fault) const;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

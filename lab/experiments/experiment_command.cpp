@@ -15,7 +15,7 @@
 #include "program/usage_error.hpp"
 #include "report/progress_line.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -78,7 +78,7 @@ void run(ExperimentOptions options) {
   const experiments::Experiment& experiment = chosen(options);
   options.experiment.out = options.out.value_or("experiment-" + options.name);
   options.experiment.command_line = command_line(options);
-  std::optional<ProgressLine> line;
+  std::optional<report::ProgressLine> line;
   std::size_t of = 0;
   options.experiment.progress = [&](std::size_t done, std::size_t total) {
     if (!line || total != of) {
@@ -120,4 +120,4 @@ void add_experiment_command(CLI::App& app) {
   command->callback([options] { run(*options); });
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -3,9 +3,9 @@
 
 #include <CLI/App.hpp>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Adds the subcommand; it runs when the command line is parsed. In a build without the simulated workcell it says so.
 void add_experiment_command(CLI::App& app);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

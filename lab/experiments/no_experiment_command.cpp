@@ -4,7 +4,7 @@
 #include "depthgrid/core/error.hpp"
 #include "lab/experiments/experiment_command.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 void add_experiment_command(CLI::App& app) {
   CLI::App* const command =
@@ -17,4 +17,4 @@ void add_experiment_command(CLI::App& app) {
   });
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

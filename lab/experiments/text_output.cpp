@@ -10,7 +10,7 @@
 namespace depthgrid::experiments {
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
-  input::FileReplacement replacement(file);
+  files::FileReplacement replacement(file);
   if (std::fwrite(text.data(), 1, text.size(), replacement.stream()) != text.size()) {
     fail("cannot write ", file.string(), ": ", std::generic_category().message(errno));
   }

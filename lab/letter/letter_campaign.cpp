@@ -8,7 +8,7 @@
 #include "depthgrid/grid/evaluation.hpp"
 #include "reference/reference.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 grid::GridEvaluator make_evaluator(const reference::RandomProblem& problem, grid::Variant variant,
@@ -94,4 +94,4 @@ std::vector<PointErrors> run_campaign(const CampaignSettings& settings, const st
   return points;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

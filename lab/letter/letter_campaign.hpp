@@ -9,7 +9,7 @@
 
 #include "lab/letter/letter_model.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// One class of scenes.
 struct CampaignSettings {
@@ -42,4 +42,4 @@ struct PointErrors {
 /// Calls progress(done, total) now and then from one of the threads.
 std::vector<PointErrors> run_campaign(const CampaignSettings& settings, const std::function<void(int, int)>& progress);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -57,7 +57,7 @@ std::string today() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace depthgrid::bench;
+  using namespace depthgrid::lab;
   std::uint64_t seed = 1;
   int scenes = 1000;
   int large_scenes = 100;

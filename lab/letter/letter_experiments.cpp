@@ -12,7 +12,7 @@
 #include "depthgrid/simulation/scene.hpp"
 #include "reference/random_problem.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 using Eigen::Vector3d;
@@ -347,4 +347,4 @@ std::vector<Vanishing> measure_vanishing(std::uint64_t seed, int trials, int thr
   return rows;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Equations (8)-(9): a single near pixel is moved sideways, at the point's own depth, until it is no longer found.
 struct WindowMiss {
@@ -42,4 +42,4 @@ struct Vanishing {
 std::vector<Vanishing> measure_vanishing(std::uint64_t seed, int trials, int threads,
                                          const std::function<void(int, int)>& progress);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

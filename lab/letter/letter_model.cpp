@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 std::vector<float> measured(const RigCamera& camera, const Frame& frame) {
@@ -219,4 +219,4 @@ double LetterModel::cell_distance_m(const Query& query, int u, int v, double d1_
   return nearest_point_letter(principal_, u, v, d1_m, d2_m, query.p).distance_m;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -10,7 +10,7 @@
 #include "depthgrid/core/pose.hpp"
 #include "reference/random_problem.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Nothing set: as printed.
 struct Mends {
@@ -57,4 +57,4 @@ class LetterModel {
   std::vector<Secondary> secondaries_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

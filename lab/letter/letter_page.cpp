@@ -9,7 +9,7 @@
 #include <functional>
 #include <utility>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// In the order in which LetterModel mends them.
@@ -341,4 +341,4 @@ void write_json(const LetterErrors& errors, std::ostream& out) {
   stream.Flush();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 #include "lab/letter/letter_campaign.hpp"
 #include "lab/letter/letter_experiments.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct CampaignResult {
   CampaignSettings settings;
@@ -28,4 +28,4 @@ struct LetterErrors {
 void write_page(const LetterErrors& errors, std::ostream& out);
 void write_json(const LetterErrors& errors, std::ostream& out);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

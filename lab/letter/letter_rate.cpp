@@ -13,7 +13,7 @@
 int main(int argc, char** argv) {
   using namespace depthgrid;
   CLI::App app{"Rate of the grid evaluators with nine control points on workload W, one core."};
-  int sets = bench::kWorkloadFrameSets;
+  int sets = lab::kWorkloadFrameSets;
   int repetitions = 20;
   std::vector<int> camera_counts{1, 2, 4, 8};
   std::string page;
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--cameras", camera_counts, "numbers of cameras")
       ->delimiter(',')
-      ->check(CLI::Range(1, bench::kWorkloadCameras))
+      ->check(CLI::Range(1, lab::kWorkloadCameras))
       ->capture_default_str();
   app.add_option("--page", page, "also write the page (Markdown)");
   app.add_option("--plot", plot, "also draw the plot (PNG)");
@@ -35,23 +35,23 @@ int main(int argc, char** argv) {
 
   try {
     std::fprintf(stderr, "rendering %d frame sets\n", sets);
-    const bench::Workload workload(*std::max_element(camera_counts.begin(), camera_counts.end()), sets);
-    std::vector<bench::RateRow> rows;
-    std::cout << bench::rate_table_head();
-    for (const bench::RateMethod& method : bench::rate_methods()) {
+    const lab::Workload workload(*std::max_element(camera_counts.begin(), camera_counts.end()), sets);
+    std::vector<lab::RateRow> rows;
+    std::cout << lab::rate_table_head();
+    for (const lab::RateMethod& method : lab::rate_methods()) {
       for (const int cameras : camera_counts) {
-        rows.push_back(bench::measure_rate(workload, cameras, method, repetitions));
-        std::cout << bench::rate_table_row(rows.back()) << std::flush;
+        rows.push_back(lab::measure_rate(workload, cameras, method, repetitions));
+        std::cout << lab::rate_table_row(rows.back()) << std::flush;
       }
     }
     if (!plot.empty()) {
-      bench::draw_rate_plot(plot, rows);
+      lab::draw_rate_plot(plot, rows);
     }
     if (!page.empty()) {
-      bench::write_rate_page(page, rows, sets);
+      lab::write_rate_page(page, rows, sets);
     }
     if (check) {
-      const std::string broken = bench::broken_ratio(rows);
+      const std::string broken = lab::broken_ratio(rows);
       if (!broken.empty()) {
         std::cerr << "depthgrid_letter_rate: " << broken << '\n';
         return 1;

@@ -10,7 +10,7 @@
 #include "lab/machine.hpp"
 #include "report/plot.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 const RateRow* find(std::span<const RateRow> rows, const std::string& name, int cameras) {
@@ -143,4 +143,4 @@ std::string broken_ratio(std::span<const RateRow> rows) {
   return {};
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 
 #include "lab/letter/letter_rate_rows.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 [[nodiscard]] std::string rate_table_head();
 [[nodiscard]] std::string rate_table_row(const RateRow& row);
@@ -21,4 +21,4 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
 /// which decide the time and, unlike it, are the same in every run.
 [[nodiscard]] std::string broken_ratio(std::span<const RateRow> rows);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include <ctime>
 #include <numeric>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// CPU time of this thread in seconds: what other programs take of the core does not count.
@@ -76,4 +76,4 @@ RateRow measure_rate(const Workload& workload, int cameras, const RateMethod& me
   return row;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 #include "depthgrid/grid/evaluation.hpp"
 #include "lab/workload/workload.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// What is measured: an evaluator's settings under a name.
 struct RateMethod {
@@ -38,4 +38,4 @@ struct RateRow {
 /// 1 cm cells, 640x480x343, as the letter has them. New control points for every evaluation.
 [[nodiscard]] RateRow measure_rate(const Workload& workload, int cameras, const RateMethod& method, int repetitions);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(10, 100000000))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  std::cout << depthgrid::bench::machine_line() << "\n\n"
+  std::cout << depthgrid::lab::machine_line() << "\n\n"
             << "| saturation | body law | situation | median us | 99.9 % | maximum |\n|---|---|---|---|---|---|\n"
             << std::flush;
   depthgrid::control::measure_all(cycles);

@@ -17,7 +17,7 @@
 #include "lab/workload/workload.hpp"
 #include "lab/workload/workload_noise.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 enum class Content { no_robot, robot, noisy_robot };
@@ -45,10 +45,10 @@ Rig rig_of_size(int cameras, int width_px, int height_px) {
   return rig;
 }
 
-search::Settings settings_for(std::size_t cameras) {
-  search::Settings settings;
-  settings.space = search::BoxSpace{{-1.5, -1.5, 0}, {1.5, 1.5, 2}};
-  settings.policies = {search::Policy::obstacle, search::Policy::ignored, search::Policy::obstacle, 0};
+views::Settings settings_for(std::size_t cameras) {
+  views::Settings settings;
+  settings.space = views::BoxSpace{{-1.5, -1.5, 0}, {1.5, 1.5, 2}};
+  settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0};
   settings.margins.resize(cameras);
   for (auto& margins : settings.margins) {
     margins.sensor = noise_margin();
@@ -65,8 +65,8 @@ struct Row {
 /// Each camera's images in turn; the snapshot of the frame set before is held, as by a thread that asks.
 Row measure(const Rig& rig, int frame_sets, int repetitions, const std::function<std::span<const Frame>(int)>& frames,
             bool with_robot) {
-  search::ViewStore store(rig, settings_for(rig.cameras.size()));
-  std::optional<search::Snapshot> held;
+  views::ViewStore store(rig, settings_for(rig.cameras.size()));
+  std::optional<views::Snapshot> held;
   std::vector<double> times_ms;
   for (int repetition = -1; repetition < repetitions; ++repetition) {
     for (int set = 0; set < frame_sets; ++set) {
@@ -74,9 +74,9 @@ Row measure(const Rig& rig, int frame_sets, int repetitions, const std::function
         Frame frame = frames(set)[k];
         frame.robot = with_robot ? frame.robot : RobotView{};
         const auto start = std::chrono::steady_clock::now();
-        const search::UpdateResult result = store.update(k, frame);
+        const views::UpdateResult result = store.update(k, frame);
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-        if (result != search::UpdateResult::taken) {
+        if (result != views::UpdateResult::taken) {
           throw std::runtime_error("a frame was not taken");
         }
         if (repetition >= 0) {
@@ -115,26 +115,26 @@ void measure_size(int width_px, int height_px, int cameras, int frame_sets, int 
 }
 
 }  // namespace
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab
 
 int main(int argc, char** argv) {
   using namespace depthgrid;
   CLI::App app{"Time of one image from the camera's buffer to being ready for the search, one core."};
-  int cameras = bench::kWorkloadCameras;
+  int cameras = lab::kWorkloadCameras;
   int sets = 4;
   int repetitions = 100;
-  app.add_option("--cameras", cameras, "most cameras")->check(CLI::Range(1, bench::kWorkloadCameras));
+  app.add_option("--cameras", cameras, "most cameras")->check(CLI::Range(1, lab::kWorkloadCameras));
   app.add_option("--frame-sets", sets, "frame sets rendered")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_option("--repetitions", repetitions, "how often the frame sets are taken in")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    std::cout << bench::machine_line() << "\n\n"
+    std::cout << lab::machine_line() << "\n\n"
               << "| image | cameras | content | median ms | 99.9 % | maximum |\n|---|---|---|---|---|---|\n"
               << std::flush;
-    bench::measure_size(640, 480, cameras, sets, repetitions);
-    bench::measure_size(1280, 720, cameras, sets, repetitions);
+    lab::measure_size(640, 480, cameras, sets, repetitions);
+    lab::measure_size(1280, 720, cameras, sets, repetitions);
   } catch (const std::exception& error) {
     std::cerr << "depthgrid_image_in: " << error.what() << '\n';
     return 1;

@@ -170,7 +170,7 @@ class Bench {
   }
 
   [[nodiscard]] std::string text() const {
-    std::string all = "Machine: " + bench::machine_line() + "\nBuilding uses all cores, looking up one.\n\n";
+    std::string all = "Machine: " + lab::machine_line() + "\nBuilding uses all cores, looking up one.\n\n";
     for (const std::string& line : table_) {
       all += line + "\n";
     }

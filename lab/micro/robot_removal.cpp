@@ -13,7 +13,7 @@
 #include "depthgrid/robot/robot_at_exposure.hpp"
 #include "lab/machine.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 using robot::RobotModel;
@@ -77,7 +77,7 @@ void measure(const RobotModel& model, double distance_m, double time_error_s, bo
 }
 
 }  // namespace
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab
 
 int main(int argc, char** argv) {
   using namespace depthgrid;
@@ -88,14 +88,14 @@ int main(int argc, char** argv) {
   app.add_option("--repetitions", repetitions, "images a pose")->check(CLI::Range(1, 10000))->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   const robot::RobotModel model = robot::kuka_lwr4();
-  std::cout << bench::machine_line() << "\n\n"
+  std::cout << lab::machine_line() << "\n\n"
             << "| camera m | time error ms | with readings | pixels with robot | ms | slowest pose, ms |\n"
             << "|---|---|---|---|---|---|\n"
             << std::flush;
   for (const double distance_m : {1.0, 2.0, 3.0}) {
     for (const double time_error_s : {0.0, 0.05}) {
       for (const bool with_reading : {false, true}) {
-        bench::measure(model, distance_m, time_error_s, with_reading, poses, repetitions);
+        lab::measure(model, distance_m, time_error_s, with_reading, poses, repetitions);
       }
     }
   }

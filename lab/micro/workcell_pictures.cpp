@@ -17,8 +17,8 @@
 namespace {
 
 using depthgrid::DepthImage;
-using depthgrid::bench::ArmShape;
-using depthgrid::bench::WorkcellScene;
+using depthgrid::lab::ArmShape;
+using depthgrid::lab::WorkcellScene;
 using depthgrid::simulation::Motion;
 
 constexpr depthgrid::report::DepthRange kRange{0.5, 5.3};

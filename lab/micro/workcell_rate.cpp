@@ -17,8 +17,8 @@
 namespace {
 
 using depthgrid::DepthImage;
-using depthgrid::bench::ArmShape;
-using depthgrid::bench::WorkcellScene;
+using depthgrid::lab::ArmShape;
+using depthgrid::lab::WorkcellScene;
 using depthgrid::simulation::Motion;
 
 constexpr int kFrames = 60;
@@ -99,7 +99,7 @@ void truth_row(const char* arm, ArmShape shape) {
 
 int main() {
   try {
-    std::printf("%s\n\n", depthgrid::bench::machine_line().c_str());
+    std::printf("%s\n\n", depthgrid::lab::machine_line().c_str());
     std::printf("| %-66s | %8s | %7s |\n|%s|%s|%s|\n", "640 x 480 pixels, one core, processor time, median", "ms",
                 "a second", std::string(68, '-').c_str(), std::string(10, '-').c_str(), std::string(9, '-').c_str());
     cast_rows("arm of capsules", ArmShape::capsules, 0);

@@ -12,7 +12,7 @@
 #include "lab/machine.hpp"
 #include "lab/workload/workload.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr int kRepetitions = 3;
@@ -33,10 +33,10 @@ struct Case {
   double mean_m = 0;
 };
 
-Case run(const search::ViewStore& store, const std::vector<search::Primitive>& points, const search::Budget& budget) {
+Case run(const views::ViewStore& store, const std::vector<search::Primitive>& points, const search::Budget& budget) {
   search::Search searcher;
   std::vector<search::Answer> answers(points.size());
-  const search::Snapshot snapshot = store.snapshot();
+  const views::Snapshot snapshot = store.snapshot();
   std::vector<double> times_ms;
   Case result;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
@@ -56,10 +56,10 @@ Case run(const search::ViewStore& store, const std::vector<search::Primitive>& p
   return result;
 }
 
-search::Settings settings_for(int cameras, double reach_m) {
-  search::Settings settings;
-  settings.space = search::BoxSpace{{-1.5, -1.5, 0.0}, {1.5, 1.5, 2.0}};
-  settings.policies = {search::Policy::obstacle, search::Policy::ignored, search::Policy::obstacle, 0};
+views::Settings settings_for(int cameras, double reach_m) {
+  views::Settings settings;
+  settings.space = views::BoxSpace{{-1.5, -1.5, 0.0}, {1.5, 1.5, 2.0}};
+  settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0};
   settings.margins.resize(static_cast<std::size_t>(cameras));
   for (auto& margins : settings.margins) {
     margins.translation_m = reach_m;
@@ -101,15 +101,15 @@ int write_table() {
       std::mt19937 generator(7);
       std::vector<std::vector<std::uint16_t>> images(static_cast<std::size_t>(cameras));
       for (const double reach_m : {0.0, 0.02}) {
-        search::Settings settings = settings_for(cameras, reach_m);
+        views::Settings settings = settings_for(cameras, reach_m);
         for (const bool at_camera : {false, true}) {
           if (at_camera && scene.name != scenes.back().name) {
             continue;  // in the blind zone all scenes are the same
           }
           if (at_camera) {
-            settings.space = search::BoxSpace{{-4, -4, -1}, {4, 4, 4}};
+            settings.space = views::BoxSpace{{-4, -4, -1}, {4, 4, 4}};
           }
-          search::ViewStore store(rig, settings);
+          views::ViewStore store(rig, settings);
           for (int k = 0; k < cameras; ++k) {
             auto& image = images[static_cast<std::size_t>(k)];
             if (image.empty()) {
@@ -142,6 +142,6 @@ int write_table() {
   return 0;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab
 
-int main() { return depthgrid::bench::write_table(); }
+int main() { return depthgrid::lab::write_table(); }

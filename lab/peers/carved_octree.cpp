@@ -1,6 +1,6 @@
 #include "lab/peers/carved_octree.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 constexpr double kLongestRay = 4.0;  ///< covers the cell from every camera
 
@@ -57,4 +57,4 @@ void CarvedOctree::insert(std::span<const Frame> frames) {
   tree_.updateInnerOccupancy();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -9,7 +9,7 @@
 #include "lab/peers/masked_image.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 enum class History : std::uint8_t {
   kept,   ///< one map for all frame sets, as OctoMap is meant
@@ -38,4 +38,4 @@ class CarvedOctree {
   std::vector<Camera> cameras_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

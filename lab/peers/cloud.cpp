@@ -5,7 +5,7 @@
 
 #include "lab/peers/wide_scan.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 Deprojector::Deprojector(const Rig& rig) {
   std::size_t widest = 0;
@@ -72,4 +72,4 @@ bool VoxelFilter::first(float x, float y, float z) {
   return is_first;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

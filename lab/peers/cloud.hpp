@@ -11,7 +11,7 @@
 #include "lab/peers/masked_image.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Which points of the clouds a peer keeps.
 enum class Crop : std::uint8_t {
@@ -82,4 +82,4 @@ void Deprojector::run(std::span<const Frame> frames, const Region* box, Append a
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 
 #include "lab/peers/wide_scan.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 CloudScanPeer::CloudScanPeer(const PeerSetting& setting, Crop crop)
     : cell_(setting.cell), rho_m_(setting.rho_m), crop_(crop), deprojector_(setting.rig) {}
@@ -32,4 +32,4 @@ void CloudScanPeer::query(std::span<const Eigen::Vector3d> points_world, std::sp
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include "lab/peers/cloud.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 class CloudScanPeer : public Peer {
  public:
@@ -22,4 +22,4 @@ class CloudScanPeer : public Peer {
   std::vector<float> x_, y_, z_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

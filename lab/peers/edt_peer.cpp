@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -48,4 +48,4 @@ void EdtPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<dou
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

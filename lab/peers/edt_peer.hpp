@@ -5,7 +5,7 @@
 
 #include "lab/peers/carved_octree.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct EdtSettings {
   double resolution_m = 0.05;
@@ -28,4 +28,4 @@ class EdtPeer : public Peer {
   std::unique_ptr<Transform> transform_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 constexpr double kSphereRadius = 1e-3;  ///< a point has no shape in FCL; taken off the distance again
 
@@ -46,4 +46,4 @@ void FclPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<dou
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

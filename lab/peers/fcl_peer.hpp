@@ -5,7 +5,7 @@
 
 #include "lab/peers/carved_octree.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 class FclPeer : public Peer {
  public:
@@ -21,4 +21,4 @@ class FclPeer : public Peer {
   std::unique_ptr<Objects> objects_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include "lab/peers/pcl_peer.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 PeerKind nanoflann_kind(const char* name, const NanoflannSettings& settings) {
@@ -58,4 +58,4 @@ std::vector<PeerKind> foreign_peers() {
   };
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

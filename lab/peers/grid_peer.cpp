@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 grid::EvaluationSettings evaluation_settings(const PeerSetting& setting, grid::Variant variant, grid::Collect collect) {
@@ -31,4 +31,4 @@ void GridPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<do
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

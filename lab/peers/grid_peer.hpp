@@ -6,7 +6,7 @@
 #include "depthgrid/grid/evaluation.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 class GridPeer : public Peer {
  public:
@@ -20,4 +20,4 @@ class GridPeer : public Peer {
   std::vector<grid::Evaluation> answers_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

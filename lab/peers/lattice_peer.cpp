@@ -4,7 +4,7 @@
 
 #include "lab/peers/masked_image.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 LatticePeer::LatticePeer(const PeerSetting& setting, double pitch_m)
     : cell_(setting.cell), rho_m_(setting.rho_m), rig_(setting.rig) {
@@ -63,4 +63,4 @@ void LatticePeer::query(std::span<const Eigen::Vector3d> points_world, std::span
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

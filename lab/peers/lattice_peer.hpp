@@ -6,7 +6,7 @@
 
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 class LatticePeer : public Peer {
  public:
@@ -25,4 +25,4 @@ class LatticePeer : public Peer {
   std::vector<DepthImage> free_m_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// Calls replace(depth, near, far) for all pixels, row by row.
@@ -34,4 +34,4 @@ void robot_looked_through(const Frame& frame, const MeasurementRule& rule, Depth
   for_each_pixel(frame, rule, free_m, [](float far_m) { return far_m; });
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

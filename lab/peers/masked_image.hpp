@@ -4,7 +4,7 @@
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/frame.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Depth of everything but the robot, for clouds: 0 = no measurement, or the robot.
 void robot_removed(const Frame& frame, const MeasurementRule& rule, DepthImage& depth_m);
@@ -13,4 +13,4 @@ void robot_removed(const Frame& frame, const MeasurementRule& rule, DepthImage& 
 /// measurement.
 void robot_looked_through(const Frame& frame, const MeasurementRule& rule, DepthImage& free_m);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nanoflann.hpp>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 struct Points {
@@ -75,4 +75,4 @@ void NanoflannPeer::query(std::span<const Eigen::Vector3d> points_world, std::sp
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

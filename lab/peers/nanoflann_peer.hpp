@@ -7,7 +7,7 @@
 #include "lab/peers/cloud.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct NanoflannSettings {
   Crop crop = Crop::cell;
@@ -32,4 +32,4 @@ class NanoflannPeer : public Peer {
   std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 #include "lab/peers/search_peer.hpp"
 #include "lab/peers/window_scan_peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 PeerKind cloud_scan(const char* name, Crop crop) {
@@ -65,4 +65,4 @@ std::vector<PeerKind> own_peers() {
   };
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

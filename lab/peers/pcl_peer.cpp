@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
@@ -61,4 +61,4 @@ void PclPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<dou
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include "lab/peers/cloud.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct PclSettings {
   Crop crop = Crop::cell;
@@ -29,4 +29,4 @@ class PclPeer : public Peer {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

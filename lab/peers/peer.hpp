@@ -12,7 +12,7 @@
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/rig.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// A box with axes along the world's, metres.
 struct Region {
@@ -66,4 +66,4 @@ struct PeerKind {
 /// Peers from other people's libraries; empty unless built with DEPTHGRID_BUILD_PEERS.
 [[nodiscard]] std::vector<PeerKind> foreign_peers();
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

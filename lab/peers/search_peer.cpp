@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
-search::Settings search_settings(const PeerSetting& setting, double resolution_m) {
-  search::Settings settings;
-  settings.space = search::BoxSpace{setting.cell.low_world, setting.cell.high_world};
-  settings.policies.unobserved = search::Policy::obstacle;
-  settings.policies.outside = search::Policy::ignored;
-  settings.policies.robot_pockets = search::Policy::obstacle;
-  search::CameraMargins margins;
+views::Settings search_settings(const PeerSetting& setting, double resolution_m) {
+  views::Settings settings;
+  settings.space = views::BoxSpace{setting.cell.low_world, setting.cell.high_world};
+  settings.policies.unobserved = views::Policy::obstacle;
+  settings.policies.outside = views::Policy::ignored;
+  settings.policies.robot_pockets = views::Policy::obstacle;
+  CameraMargins margins;
   margins.sensor = setting.sensor;
   margins.translation_m = setting.pose.translation_m;
   margins.rotation_rad = setting.pose.rotation_rad;
@@ -43,4 +43,4 @@ void SearchPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,11 +6,11 @@
 #include "depthgrid/search/search.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// W is the cell, unobserved space and pockets behind the robot are obstacles, outside is ignored; the margins are
 /// those of the setting.
-[[nodiscard]] search::Settings search_settings(const PeerSetting& setting, double resolution_m);
+[[nodiscard]] views::Settings search_settings(const PeerSetting& setting, double resolution_m);
 
 class SearchPeer : public Peer {
  public:
@@ -18,17 +18,17 @@ class SearchPeer : public Peer {
   void prepare(std::span<const Frame> frames, const Region& region) override;
   void query(std::span<const Eigen::Vector3d> points_world, std::span<double> distances_m) override;
 
-  [[nodiscard]] search::ViewStore& store() { return store_; }
-  [[nodiscard]] const search::Snapshot& snapshot() const { return snapshot_; }
+  [[nodiscard]] views::ViewStore& store() { return store_; }
+  [[nodiscard]] const views::Snapshot& snapshot() const { return snapshot_; }
   [[nodiscard]] search::Search& search() { return search_; }
 
  private:
   double rho_m_;
-  search::ViewStore store_;
-  search::Snapshot snapshot_;
+  views::ViewStore store_;
+  views::Snapshot snapshot_;
   search::Search search_;
   std::vector<search::Primitive> primitives_;
   std::vector<search::Answer> answers_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -9,7 +9,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::bench::HWY_NAMESPACE {
+namespace depthgrid::lab::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, kWidestVector>;
 
@@ -77,11 +77,11 @@ void deproject_row(const WorldRow& row, float* HWY_RESTRICT x, float* HWY_RESTRI
   }
 }
 
-}  // namespace depthgrid::bench::HWY_NAMESPACE
+}  // namespace depthgrid::lab::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 HWY_EXPORT(nearest_squared);
 HWY_EXPORT(nearest_shadow_squared);
@@ -100,5 +100,5 @@ void deproject_row(const WorldRow& row, float* x, float* y, float* z, float* kee
   HWY_DYNAMIC_DISPATCH(deproject_row)(row, x, y, z, keep);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab
 #endif

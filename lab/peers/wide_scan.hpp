@@ -7,7 +7,7 @@
 
 #include "depthgrid/grid/surveillance_window.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Points beside each other in memory need no gather.
 struct CloudColumns {
@@ -47,4 +47,4 @@ struct WorldRow {
 /// Writes the coordinates of all pixels, and 1 where the pixel has a depth and lies in the box, else 0.
 void deproject_row(const WorldRow& row, float* x, float* y, float* z, float* keep);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 
 #include "lab/peers/wide_scan.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -76,4 +76,4 @@ void WindowScanPeer::query(std::span<const Eigen::Vector3d> points_world, std::s
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

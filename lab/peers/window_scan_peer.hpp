@@ -8,7 +8,7 @@
 #include "lab/peers/masked_image.hpp"
 #include "lab/peers/peer.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 class WindowScanPeer : public Peer {
  public:
@@ -36,4 +36,4 @@ class WindowScanPeer : public Peer {
   std::vector<Camera> cameras_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

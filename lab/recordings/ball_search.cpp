@@ -12,7 +12,7 @@
 #include "lab/recordings/figures.hpp"
 #include "lab/recordings/margin_settings.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -29,13 +29,13 @@ Rig on_floor(Rig rig) {
   return rig;
 }
 
-search::Settings settings_of(const MarginSetting& setting, const CameraSet& cameras) {
+views::Settings settings_of(const MarginSetting& setting, const CameraSet& cameras) {
   const Eigen::AlignedBox3d workspace = ball_workspace_floor();
   // The points lie up to 0.6 m around the ball.
   const Eigen::Vector3d around = Eigen::Vector3d::Constant(0.6);
-  search::Settings settings;
-  settings.space = search::BoxSpace{workspace.min() - around, workspace.max() + around};
-  settings.policies = {search::Policy::ignored, search::Policy::ignored, search::Policy::obstacle, 0};
+  views::Settings settings;
+  settings.space = views::BoxSpace{workspace.min() - around, workspace.max() + around};
+  settings.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::obstacle, 0};
   for (const std::size_t k : cameras) {
     settings.margins.push_back(setting.margins[k]);
   }
@@ -123,7 +123,7 @@ std::vector<CameraSet> all_sets(std::size_t camera_count) {
 
 }  // namespace
 
-std::vector<BallSearchFigures> study_ball_search(input::Recording& recording, const BallTrack& track,
+std::vector<BallSearchFigures> study_ball_search(files::Recording& recording, const BallTrack& track,
                                                  const std::vector<int>& frames) {
   const Pose T_floor_world = recording.rig().T_floor_world.value_or(Pose::Identity());
   const Rig rig = on_floor(with_kinect_range(recording.rig()));
@@ -137,8 +137,8 @@ std::vector<BallSearchFigures> study_ball_search(input::Recording& recording, co
       rows.back().cameras = count;
     }
     for (const CameraSet& set : all_sets(n)) {
-      const search::Settings settings = settings_of(setting, set);
-      search::ViewStore store(sub_rig(rig, set), settings);
+      const views::Settings settings = settings_of(setting, set);
+      views::ViewStore store(sub_rig(rig, set), settings);
       search::Search search;
       for (const int frame : frames) {
         const auto tracked = track.centre_world.find(recording.frame_number(frame));
@@ -203,4 +203,4 @@ std::string ball_search_tables(const std::vector<BallSearchFigures>& rows) {
   return out.str();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 #include "depthgrid/files/recording.hpp"
 #include "lab/recordings/ball_track.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// All answers of one setting with one number of cameras: every choice of that many.
 struct BallSearchFigures {
@@ -30,9 +30,9 @@ struct BallSearchFigures {
 
 /// Runs over the frames given (indices) under ball_margins() with every choice of one, two and three cameras. Space
 /// that no camera covers is ignored, as in the grid study. The world is the recording's floor frame. Throws Error.
-[[nodiscard]] std::vector<BallSearchFigures> study_ball_search(input::Recording& recording, const BallTrack& track,
+[[nodiscard]] std::vector<BallSearchFigures> study_ball_search(files::Recording& recording, const BallTrack& track,
                                                                const std::vector<int>& frames);
 
 [[nodiscard]] std::string ball_search_tables(const std::vector<BallSearchFigures>& rows);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 
 #include "depthgrid/core/sensor_models.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -123,7 +123,7 @@ grid::DepthQuantisation ball_cells() {
 
 Eigen::AlignedBox3d ball_workspace_floor() { return {Eigen::Vector3d(-1.0, 1.4, 0.1), Eigen::Vector3d(1.2, 3.9, 2.0)}; }
 
-BallStudy study_ball(input::Recording& recording, const BallTrack& track, const std::vector<int>& frames,
+BallStudy study_ball(files::Recording& recording, const BallTrack& track, const std::vector<int>& frames,
                      const std::vector<Setting>& settings,
                      const std::function<void(std::size_t, std::size_t)>& progress) {
   const Rig& rig = recording.rig();
@@ -179,4 +179,4 @@ BallStudy study_ball(input::Recording& recording, const BallTrack& track, const 
   return study;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

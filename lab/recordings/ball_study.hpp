@@ -13,7 +13,7 @@
 #include "lab/recordings/ball_track.hpp"
 #include "lab/recordings/gray_area.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Where an answer came from and how it compares with the ball.
 struct Sample {
@@ -67,8 +67,8 @@ inline constexpr double kTolerance_m = 0.05;
 [[nodiscard]] Eigen::AlignedBox3d ball_workspace_floor();
 
 /// Runs over the frames given (indices), every camera as principal in turn. `progress(done, total)` may be empty.
-[[nodiscard]] BallStudy study_ball(input::Recording& recording, const BallTrack& track, const std::vector<int>& frames,
+[[nodiscard]] BallStudy study_ball(files::Recording& recording, const BallTrack& track, const std::vector<int>& frames,
                                    const std::vector<Setting>& settings,
                                    const std::function<void(std::size_t, std::size_t)>& progress);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 
 #include "lab/recordings/figures.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -165,4 +165,4 @@ std::string ball_tables(const BallStudy& study, const Rig& rig) {
   return out.str();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 
 #include "lab/recordings/ball_study.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// All samples of one setting taken with one number of cameras, every camera as principal.
 struct BallFigures {
@@ -39,4 +39,4 @@ struct ShadowFigures {
 
 [[nodiscard]] std::string ball_tables(const BallStudy& study, const Rig& rig);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 BallTrack load_ball_track(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -50,4 +50,4 @@ std::filesystem::path recording_folder(const std::string& name) {
   return std::filesystem::path(data != nullptr && *data != '\0' ? data : "../shared/data") / name;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// The ball as one camera alone sees it.
 struct BallFit {
@@ -29,4 +29,4 @@ BallTrack load_ball_track(const std::filesystem::path& file);
 /// The folder of a recording: $DEPTHGRID_DATA/name, by default ../shared/data/name from the current folder.
 std::filesystem::path recording_folder(const std::string& name);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

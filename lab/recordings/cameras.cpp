@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 Rig sub_rig(const Rig& rig, const CameraSet& cameras) {
   Rig result;
@@ -53,4 +53,4 @@ std::vector<CameraSet> camera_sets(std::size_t camera_count, std::size_t princip
   return sets;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -10,7 +10,7 @@
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/grid/closed_form_map.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Indices in the whole rig; the first is the principal camera.
 using CameraSet = std::vector<std::size_t>;
@@ -22,4 +22,4 @@ using CameraSet = std::vector<std::size_t>;
 /// Every set with `principal` first and the others in ascending order; 2^(n-1) sets, smallest first.
 [[nodiscard]] std::vector<CameraSet> camera_sets(std::size_t camera_count, std::size_t principal);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) {
@@ -35,4 +35,4 @@ std::string millimetres(double value_m) {
   return text == "-" || value_m <= 0 ? (text == "-0" ? "0" : text) : "+" + text;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

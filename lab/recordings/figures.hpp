@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// The q-quantile (nearest rank), 0 <= q <= 1; NaN when empty.
 [[nodiscard]] double quantile(std::vector<double> values, double q);
@@ -18,4 +18,4 @@ namespace depthgrid::bench {
 /// Metres as whole millimetres with their sign.
 [[nodiscard]] std::string millimetres(double value_m);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

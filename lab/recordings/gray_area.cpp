@@ -6,7 +6,7 @@
 #include "depthgrid/grid/closed_form_map.hpp"
 #include "depthgrid/grid/observation.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -72,4 +72,4 @@ void add_gray_area(const Rig& rig, const CameraSet& cameras, std::span<const Fra
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -10,7 +10,7 @@
 #include "depthgrid/grid/depth_grid.hpp"
 #include "lab/recordings/cameras.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Volumes in cubic metres, from a sample of the principal camera's depth cells whose centre lies in the workspace.
 struct GrayArea {
@@ -26,4 +26,4 @@ void add_gray_area(const Rig& rig, const CameraSet& cameras, std::span<const Fra
                    const grid::DepthQuantisation& quantisation, const Eigen::AlignedBox3d& workspace_floor,
                    GrayArea& area);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -13,7 +13,7 @@
 #include "lab/recordings/figures.hpp"
 #include "lab/recordings/gray_area.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -51,9 +51,9 @@ struct Row {
 }  // namespace
 
 std::string kitchen_tables() {
-  input::RecordingOptions options;
+  files::RecordingOptions options;
   options.camera_ids = {"f000000", "f000160", "f000480", "f000580"};
-  input::Recording recording(recording_folder("redkitchen_poses"), options);
+  files::Recording recording(recording_folder("redkitchen_poses"), options);
   const Rig& rig = recording.rig();
   const auto images = recording.read(0);
   const Pose T_world_floor = rig.T_floor_world.value_or(Pose::Identity()).inverse();
@@ -115,4 +115,4 @@ std::string kitchen_tables() {
   return out.str();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

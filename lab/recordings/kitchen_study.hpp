@@ -3,10 +3,10 @@
 
 #include <string>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Runs the first of the four-camera rigs that redkitchen_poses suggests and gives its tables as Markdown. Throws
 /// Error.
 [[nodiscard]] std::string kitchen_tables();
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

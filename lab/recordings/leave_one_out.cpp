@@ -4,19 +4,19 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
 constexpr double kReach_m = 20;
 
-search::Settings settings_of(const std::vector<CameraMargins>& margins, double v_max_m_s) {
-  search::Settings settings;
-  settings.space = search::BoxSpace{Eigen::Vector3d::Constant(-kReach_m), Eigen::Vector3d::Constant(kReach_m)};
+views::Settings settings_of(const std::vector<CameraMargins>& margins, double v_max_m_s) {
+  views::Settings settings;
+  settings.space = views::BoxSpace{Eigen::Vector3d::Constant(-kReach_m), Eigen::Vector3d::Constant(kReach_m)};
   // An ignored gap between the views would count as free although nobody reports it so.
-  settings.policies.unobserved = search::Policy::obstacle;
-  settings.policies.outside = search::Policy::ignored;
-  settings.policies.robot_pockets = search::Policy::obstacle;
+  settings.policies.unobserved = views::Policy::obstacle;
+  settings.policies.outside = views::Policy::ignored;
+  settings.policies.robot_pockets = views::Policy::obstacle;
   settings.margins = margins;
   settings.rho_m = kLeaveOneOutRho_m;
   settings.resolution_m = kLeaveOneOutResolution_m;
@@ -25,7 +25,7 @@ search::Settings settings_of(const std::vector<CameraMargins>& margins, double v
 }
 
 /// True when some camera looks at the reading's point; finds the one that frees it by most.
-bool look(const search::Snapshot& snapshot, LeftOutReading& reading) {
+bool look(const views::Snapshot& snapshot, LeftOutReading& reading) {
   bool covered = false;
   double most_m = 0;
   for (std::size_t k = 0; k < snapshot.camera_count(); ++k) {
@@ -65,14 +65,14 @@ LeaveOneOut::LeaveOneOut(const Rig& asked, const std::vector<CameraMargins>& mar
     : settings_(settings_of(margins, v_max_m_s)), store_(asked, settings_) {}
 
 void LeaveOneOut::update(std::size_t slot, const Frame& frame, const Pose& T_world_camera) {
-  if (store_.update(slot, frame, T_world_camera) != search::UpdateResult::taken) {
+  if (store_.update(slot, frame, T_world_camera) != views::UpdateResult::taken) {
     fail("camera ", slot, ": its frame was not taken; it must have the calibration's size");
   }
 }
 
 DepthImage LeaveOneOut::measured(std::size_t slot) const {
-  const search::Snapshot snapshot = store_.snapshot();
-  const search::View& view = snapshot.view(slot);
+  const views::Snapshot snapshot = store_.snapshot();
+  const views::View& view = snapshot.view(slot);
   DepthImage image(view.width_px(), view.height_px());
   for (int v = 0; v < image.height_px(); ++v) {
     for (int u = 0; u < image.width_px(); ++u) {
@@ -84,7 +84,7 @@ DepthImage LeaveOneOut::measured(std::size_t slot) const {
 
 std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const CameraMargins& margins,
                                                const DepthImage& depth, int stride) {
-  const search::Snapshot snapshot = store_.snapshot();
+  const views::Snapshot snapshot = store_.snapshot();
   const MeasurementRule& rule = left_out.rule;
   const Eigen::Vector3d centre = left_out.T_world_camera.translation();
   std::vector<LeftOutReading> readings;
@@ -125,4 +125,4 @@ std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const 
   return readings;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

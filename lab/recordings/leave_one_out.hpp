@@ -12,7 +12,7 @@
 #include "depthgrid/search/search.hpp"
 #include "lab/recordings/margin_settings.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 inline constexpr double kLeaveOneOutRho_m = 0.5;
 inline constexpr double kLeaveOneOutResolution_m = 0.005;
@@ -63,9 +63,9 @@ class LeaveOneOut {
   [[nodiscard]] DepthImage measured(std::size_t slot) const;
 
  private:
-  search::Settings settings_;
-  search::ViewStore store_;
+  views::Settings settings_;
+  views::ViewStore store_;
   search::Search search_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -82,4 +82,4 @@ LeftOutCause cause_of(const LeftOutReading& reading, const DepthImage& left_out,
   return reading.gap_m >= kThrough_m ? LeftOutCause::background_seen : LeftOutCause::offset;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

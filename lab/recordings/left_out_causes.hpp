@@ -13,7 +13,7 @@
 #include "depthgrid/core/depth_image.hpp"
 #include "lab/recordings/leave_one_out.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// What is found at a violating reading, the first that applies.
 enum class LeftOutCause : std::uint8_t {
@@ -50,4 +50,4 @@ struct LeftOutFigures {
   std::vector<double> excesses_m;               ///< answer - allowance of the violations
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

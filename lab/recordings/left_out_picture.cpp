@@ -5,7 +5,7 @@
 #include "report/canvas.hpp"
 #include "report/depth_picture.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr int kStride = 2;
 constexpr std::array<report::Colour, kLeftOutCauses> kColours = {
     {{0.10, 0.35, 1.00}, {0.10, 0.75, 0.15}, {0.75, 1.00, 0.20}, {1.00, 0.05, 0.05}, {1.00, 1.00, 1.00}}};
 
-DepthImage read_measured(input::Recording& recording, const Rig& rig, std::size_t camera, int frame) {
+DepthImage read_measured(files::Recording& recording, const Rig& rig, std::size_t camera, int frame) {
   DepthImage image(rig.cameras[camera].intrinsics.width_px, rig.cameras[camera].intrinsics.height_px);
   normalise(recording.read(frame)[camera].depth, rig.cameras[camera].rule, image);
   return image;
@@ -38,7 +38,7 @@ void draw_legend(report::Canvas& canvas, double y_px) {
 
 }  // namespace
 
-void save_left_out_picture(const std::filesystem::path& file, input::Recording& recording,
+void save_left_out_picture(const std::filesystem::path& file, files::Recording& recording,
                            const std::vector<int>& frames, int frame) {
   const Rig rig = with_kinect_range(recording.rig());
   const std::size_t n = rig.cameras.size();
@@ -108,4 +108,4 @@ void save_left_out_picture(const std::filesystem::path& file, input::Recording& 
   canvas.save_png(file);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 #include "lab/recordings/ball_track.hpp"
 #include "lab/recordings/cameras.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -103,7 +103,7 @@ void check_left_out(LeaveOneOut& others, const LeftOutImage& image, int stride, 
   }
 }
 
-std::vector<LeftOutRow> ball_leave_one_out(input::Recording& recording, const std::vector<int>& frames, int stride) {
+std::vector<LeftOutRow> ball_leave_one_out(files::Recording& recording, const std::vector<int>& frames, int stride) {
   const Rig rig = with_kinect_range(recording.rig());
   const std::size_t n = rig.cameras.size();
   std::vector<std::vector<DepthImage>> images(n);
@@ -136,7 +136,7 @@ std::vector<LeftOutRow> ball_leave_one_out(input::Recording& recording, const st
 
 std::vector<LeftOutRow> kitchen_leave_one_out(int stride) {
   constexpr std::size_t kSlots = 4;
-  input::Recording recording(recording_folder("redkitchen_poses"));
+  files::Recording recording(recording_folder("redkitchen_poses"));
   const Rig rig = with_kinect_range(recording.rig());
   const auto frames = recording.read(0);
   const std::array<std::array<const char*, 4>, 3> suggested = {{{"f000000", "f000160", "f000480", "f000580"},
@@ -171,4 +171,4 @@ std::vector<LeftOutRow> kitchen_leave_one_out(int stride) {
   return rows;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 #include "depthgrid/files/recording.hpp"
 #include "lab/recordings/left_out_causes.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct LeftOutRow {
   std::string setting;
@@ -36,7 +36,7 @@ void check_left_out(LeaveOneOut& others, const LeftOutImage& image, int stride, 
 
 /// kinect3_ball: every camera left out in turn, in the frames given (indices), under ball_margins(); every
 /// `stride`-th pixel of every `stride`-th row. The medians are taken over `frames`. Throws Error.
-[[nodiscard]] std::vector<LeftOutRow> ball_leave_one_out(input::Recording& recording, const std::vector<int>& frames,
+[[nodiscard]] std::vector<LeftOutRow> ball_leave_one_out(files::Recording& recording, const std::vector<int>& frames,
                                                          int stride);
 
 /// redkitchen_poses as one camera that moves: every image is checked against the four before it, each at its own pose,
@@ -48,7 +48,7 @@ void check_left_out(LeaveOneOut& others, const LeftOutImage& image, int stride, 
 
 /// The three images of a frame with their violating readings (every second pixel), without margins and with the
 /// sensor's.
-void save_left_out_picture(const std::filesystem::path& file, input::Recording& recording,
+void save_left_out_picture(const std::filesystem::path& file, files::Recording& recording,
                            const std::vector<int>& frames, int frame);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -3,7 +3,7 @@
 #include "lab/recordings/figures.hpp"
 #include "lab/recordings/left_out_study.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::string left_out_tables(const std::vector<LeftOutRow>& rows) {
   return out.str();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

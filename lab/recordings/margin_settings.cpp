@@ -5,7 +5,7 @@
 
 #include "depthgrid/core/sensor_models.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -70,4 +70,4 @@ Rig with_kinect_range(Rig rig) {
   return rig;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/rig.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// One choice of margins for all cameras of a rig.
 struct MarginSetting {
@@ -31,4 +31,4 @@ struct MarginSetting {
 /// The cameras with the range in which the Kinect v1's model believes readings.
 [[nodiscard]] Rig with_kinect_range(Rig rig);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

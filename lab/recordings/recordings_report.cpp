@@ -58,57 +58,56 @@ void replace(std::string& text, const std::string& place, const std::string& by)
 }
 
 /// One frame with the answers of all cameras to the points at 0.4 m and more around the ball.
-void save_picture(const Options& options, input::Recording& recording, const bench::BallTrack& track, int index) {
+void save_picture(const Options& options, files::Recording& recording, const lab::BallTrack& track, int index) {
   const Rig& rig = recording.rig();
   const int number = recording.frame_number(index);
-  const auto setting = bench::ball_settings().at(1);
-  grid::GridEvaluator evaluator(rig, 0, bench::ball_cells(), setting.evaluation);
+  const auto setting = lab::ball_settings().at(1);
+  grid::GridEvaluator evaluator(rig, 0, lab::ball_cells(), setting.evaluation);
   const auto frames = recording.read(index);
   evaluator.update(frames);
   const Pose T_floor_world = rig.T_floor_world.value_or(Pose::Identity());
-  std::vector<app::PictureLine> lines;
-  for (const auto& p_floor : bench::points_around(T_floor_world * track.centre_world.at(number))) {
+  std::vector<program::PictureLine> lines;
+  for (const auto& p_floor : lab::points_around(T_floor_world * track.centre_world.at(number))) {
     const Eigen::Vector3d p_world = T_floor_world.inverse() * p_floor;
     lines.push_back({p_world, evaluator.evaluate(p_world).nearest});
   }
-  app::save_frame_picture(options.picture,
-                          "kinect3_ball, frame " + std::to_string(number) + ": " + setting.name + ", three cameras",
-                          rig, frames, lines, setting.evaluation.rho_m);
+  program::save_frame_picture(options.picture,
+                              "kinect3_ball, frame " + std::to_string(number) + ": " + setting.name + ", three cameras",
+                              rig, frames, lines, setting.evaluation.rho_m);
 }
 
 void run(const Options& options) {
-  const auto folder = bench::recording_folder("kinect3_ball");
+  const auto folder = lab::recording_folder("kinect3_ball");
   if (!std::filesystem::exists(folder / "rig.json")) {
     fail("the recording ", folder.string(), " is absent; set DEPTHGRID_DATA to the folder that holds kinect3_ball");
   }
-  input::Recording recording(folder);
-  const auto track = bench::load_ball_track(folder / "ball.json");
-  std::vector<int> frames = app::select_frames(options.frames, recording.frame_number(0), recording.frame_count());
+  files::Recording recording(folder);
+  const auto track = lab::load_ball_track(folder / "ball.json");
+  std::vector<int> frames = program::select_frames(options.frames, recording.frame_number(0), recording.frame_count());
   for (int& frame : frames) {
     frame -= recording.frame_number(0);
   }
-  bench::BallStudy study;
+  lab::BallStudy study;
   {
-    app::ProgressLine progress("kinect3_ball, frame", frames.size());
-    study = bench::study_ball(recording, track, frames, bench::ball_settings(),
-                              [&](std::size_t done, std::size_t) { progress.update(done); });
+    report::ProgressLine progress("kinect3_ball, frame", frames.size());
+    study = lab::study_ball(recording, track, frames, lab::ball_settings(),
+                            [&](std::size_t done, std::size_t) { progress.update(done); });
   }
   save_picture(options, recording, track, frames.front());
   std::string text = file_text(options.text);
   replace(text, "@BALL_FRAME_LIST@", options.frames.empty() ? "all" : options.frames);
   replace(text, "@BALL_FRAMES@", std::to_string(study.frames));
   replace(text, "@BALL_POINTS@", std::to_string(study.points_per_frame));
-  replace(text, "@BALL_TABLES@", bench::ball_tables(study, recording.rig()));
-  replace(text, "@KITCHEN_TABLES@", bench::kitchen_tables());
-  replace(text, "@SEARCH_TABLES@", bench::ball_search_tables(bench::study_ball_search(recording, track, frames)));
+  replace(text, "@BALL_TABLES@", lab::ball_tables(study, recording.rig()));
+  replace(text, "@KITCHEN_TABLES@", lab::kitchen_tables());
+  replace(text, "@SEARCH_TABLES@", lab::ball_search_tables(lab::study_ball_search(recording, track, frames)));
   replace(text, "@STRIDE@", std::to_string(options.stride));
-  replace(text, "@LEFT_OUT_TABLES@",
-          bench::left_out_tables(bench::ball_leave_one_out(recording, frames, options.stride)));
-  replace(text, "@KITCHEN_LEFT_OUT_TABLES@", bench::left_out_tables(bench::kitchen_leave_one_out(options.stride)));
-  bench::save_left_out_picture(options.left_out_picture, recording, frames,
-                               options.left_out_frame - recording.frame_number(0));
-  replace(text, "@MACHINE@", bench::machine_line());
-  app::OutputFile output(options.output);
+  replace(text, "@LEFT_OUT_TABLES@", lab::left_out_tables(lab::ball_leave_one_out(recording, frames, options.stride)));
+  replace(text, "@KITCHEN_LEFT_OUT_TABLES@", lab::left_out_tables(lab::kitchen_leave_one_out(options.stride)));
+  lab::save_left_out_picture(options.left_out_picture, recording, frames,
+                             options.left_out_frame - recording.frame_number(0));
+  replace(text, "@MACHINE@", lab::machine_line());
+  program::OutputFile output(options.output);
   output.write(text);
   output.commit();
 }

@@ -4,7 +4,7 @@
 #include "lab/speed/calls.hpp"
 #include "lab/speed/our_figures.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// One image a camera without a scene: each pixel is what `pixel` says, in millimetres.
@@ -71,4 +71,4 @@ void measure_adversarial(Stage& stage, const OurPlan& plan, Report& report) {
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -20,7 +20,7 @@
 namespace {
 
 using namespace depthgrid;
-using namespace depthgrid::bench;
+using namespace depthgrid::lab;
 
 constexpr double kLateS = 20 * 60.0;  ///< from then on rows are cut short, so that a run ends within half an hour
 

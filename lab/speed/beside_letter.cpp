@@ -2,7 +2,7 @@
 #include "lab/speed/calls.hpp"
 #include "lab/speed/our_figures.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 void measure_beside_letter(Stage& stage, const std::string& workload, const OurPlan& plan, Report& report) {
   PeerSetting setting = stage.setting();
@@ -47,4 +47,4 @@ void measure_beside_letter(Stage& stage, const std::string& workload, const OurP
   add("letter, minimum", minimum_s);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 
 #include "lab/speed/stage.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 Questions as_points(const std::vector<Eigen::Vector3d>& points_world) {
   Questions questions(points_world.size());
@@ -60,4 +60,4 @@ Record Calls::record(const std::string& group, const std::string& name, int came
   return record;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

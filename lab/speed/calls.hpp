@@ -9,7 +9,7 @@
 #include "lab/speed/record.hpp"
 #include "lab/speed/samples.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Of all figures but those that vary it, metres.
 inline constexpr double kResolution = 0.005;
@@ -45,4 +45,4 @@ class Calls {
   std::vector<search::Answer> answers_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

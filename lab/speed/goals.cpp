@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -145,4 +145,4 @@ std::string broken_claim(const Report& report) {
   return {};
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 
 #include "lab/speed/record.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// What is measured on: the name that ends the names of groups, as in "ours, W", and its title on the page.
 struct WorkloadName {
@@ -36,4 +36,4 @@ struct Goal {
 /// Far more generous than the goals, and never an absolute time.
 [[nodiscard]] std::string broken_claim(const Report& report);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// "VmRSS" or "VmHWM", in bytes; NaN when there is no such line.
@@ -40,4 +40,4 @@ double MemoryPeak::growth_bytes() const {
   return usable_ ? std::max(0.0, status_bytes("VmHWM") - start_bytes_) : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Resets the kernel's record of the peak when constructed.
 class MemoryPeak {
@@ -18,4 +18,4 @@ class MemoryPeak {
   double start_bytes_ = 0;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 std::string digits3(double value) {
   if (!std::isfinite(value)) {
@@ -40,4 +40,4 @@ std::string millimetres(double value_m) {
   return std::isnan(value) ? "-" : value >= 10 ? whole(value) : digits3(value).substr(0, 3);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Three significant digits without exponent: "0.0123", "4.56", "12300"; "-" for NaN.
 [[nodiscard]] std::string digits3(double value);
@@ -16,4 +16,4 @@ namespace depthgrid::bench {
 /// To a tenth below 10 mm, else whole.
 [[nodiscard]] std::string millimetres(double value_m);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

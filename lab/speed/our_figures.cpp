@@ -5,7 +5,7 @@
 
 #include "lab/speed/calls.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// Questions of repetition i after a frame set; none: the kind is left out of this set.
@@ -110,4 +110,4 @@ void measure_ours(Stage& stage, const std::string& workload, const OurMargins& m
   measure_errors(stage, ours, group, margins, plan.accuracy_sets, report);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include "lab/speed/record.hpp"
 #include "lab/speed/stage.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// What the search is told of sensors and calibration.
 struct OurMargins {
@@ -34,4 +34,4 @@ void measure_beside_letter(Stage& stage, const std::string& workload, const OurP
 /// nothing measured at all, and points at the cameras.
 void measure_adversarial(Stage& stage, const OurPlan& plan, Report& report);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 #include "lab/speed/page_parts.hpp"
 #include "lab/speed/page_text.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 void write_page(const std::string& file, const std::string& images, const Report& report) {
   std::ostringstream page;
@@ -42,4 +42,4 @@ void write_page(const std::string& file, const std::string& images, const Report
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

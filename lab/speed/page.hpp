@@ -5,9 +5,9 @@
 
 #include "lab/speed/record.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// `images` is the plots' folder as seen from the page. Throws Error when the file cannot be written.
 void write_page(const std::string& file, const std::string& images, const Report& report);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include "lab/speed/page_parts.hpp"
 #include "report/markdown_table.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 void write_goals(std::ostream& page, const std::vector<Goal>& all) {
   page << "## Goals\n\n";
@@ -49,4 +49,4 @@ void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report
   page << table.text() << "\n\n";
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 #include "lab/speed/page_parts.hpp"
 #include "report/markdown_table.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 void write_rates(std::ostream& page, const Report& report) {
@@ -90,4 +90,4 @@ void write_ours(std::ostream& page, const Report& report) {
   write_adversarial(page, report);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

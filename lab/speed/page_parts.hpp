@@ -7,7 +7,7 @@
 #include "lab/speed/goals.hpp"
 #include "lab/speed/record.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 void write_goals(std::ostream& page, const std::vector<Goal>& all);
 /// Where the time of what was missed goes, as far as counts tell.
@@ -17,4 +17,4 @@ void write_ours(std::ostream& page, const Report& report);
 /// All peers' tables, and what is quicker than ours.
 void write_side_by_side(std::ostream& page, const Report& report);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 #include "lab/speed/page_parts.hpp"
 #include "report/markdown_table.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 std::string yes_no(double value) { return value != 0 ? "yes" : "no"; }
@@ -85,4 +85,4 @@ void write_side_by_side(std::ostream& page, const Report& report) {
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -1,7 +1,7 @@
 // The parts of the page that no number changes.
 #pragma once
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 inline constexpr const char* kIntroduction = R"(# Benchmark
 
@@ -54,4 +54,4 @@ All from Debian 12 packages, built like this project for any x86-64; scans choos
   view.
 )";
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 
 #include "report/plot.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr double kWidth = 980;
@@ -127,4 +127,4 @@ void draw_plots(const std::string& folder, const Report& report) {
   draw_accuracy(folder, report);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 double Progress::elapsed_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -23,4 +23,4 @@ void Progress::step(const std::string& what, double expected_s) {
 
 void Progress::finish() { std::fprintf(stderr, "done in %.1f min\n", elapsed_s() / 60); }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Steps have expected costs; the time left follows from how long the steps so far took for theirs.
 class Progress {
@@ -22,4 +22,4 @@ class Progress {
   double expected_current_s_ = 0;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -12,7 +12,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 using Writer = rapidjson::PrettyWriter<rapidjson::OStreamWrapper>;
@@ -136,4 +136,4 @@ Report read_json(const std::string& file) {
   return report;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

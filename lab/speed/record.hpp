@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// One row. Times are in seconds, lengths in metres, memory in bytes; the key ends in the unit.
 struct Record {
@@ -39,4 +39,4 @@ void write_json(const std::string& file, const Report& report);
 /// Throws Error when the file cannot be read or is no such report.
 [[nodiscard]] Report read_json(const std::string& file);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 double Samples::mean() const {
   return empty() ? std::numeric_limits<double>::quiet_NaN()
@@ -33,4 +33,4 @@ void Samples::describe(const std::string& key, const std::string& unit, std::map
   numbers[key + "_max_" + unit] = largest();
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

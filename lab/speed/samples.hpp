@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// CPU time of this thread in seconds: what other programs take of the core does not count.
 [[nodiscard]] inline double cpu_time_s() {
@@ -55,4 +55,4 @@ class Samples {
   std::vector<double> values_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -8,7 +8,7 @@
 #include "lab/speed/memory.hpp"
 #include "lab/speed/samples.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr double kSlow = 1.0;         ///< seconds for a frame set: at most three of them
@@ -138,4 +138,4 @@ void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string&
   report.records.push_back(std::move(record));
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

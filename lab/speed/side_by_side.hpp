@@ -5,7 +5,7 @@
 #include "lab/speed/record.hpp"
 #include "lab/speed/stage.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct SideBySidePlan {
   int most_frame_sets = 30;
@@ -18,4 +18,4 @@ struct SideBySidePlan {
 void measure_side_by_side(Stage& stage, const PeerKind& kind, const std::string& workload, const SideBySidePlan& plan,
                           Report& report);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

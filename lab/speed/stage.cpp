@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr double kSubStepRate = kWorkloadRate * kSubSteps;
@@ -178,4 +178,4 @@ const std::vector<Eigen::Vector3d>& Stage::deep_points(int set) {
   return found->second;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -13,7 +13,7 @@
 #include "lab/workload/workload_noise.hpp"
 #include "reference/reference.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// The space of interest of all comparisons, inside the room: 3 x 3 x 2 m.
 [[nodiscard]] Region workload_cell();
@@ -71,4 +71,4 @@ class Stage {
 /// The smallest box around the points, grown by rho.
 [[nodiscard]] Region region_of(std::span<const Eigen::Vector3d> points_world);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 #include "lab/peers/search_peer.hpp"
 #include "lab/speed/samples.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr double kNotRepeated = 0.1;  ///< seconds for one frame set or query: not repeated
@@ -150,4 +150,4 @@ void sweep_image(const std::vector<PeerKind>& kinds, const SweepPlan& plan, Repo
   }
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -9,7 +9,7 @@
 #include "lab/speed/record.hpp"
 #include "lab/speed/stage.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 struct SweepPlan {
   int frame_sets = 5;
@@ -29,4 +29,4 @@ void sweep_image(const std::vector<PeerKind>& kinds, const SweepPlan& plan, Repo
 /// The kinds with these names, in this order; names that are not there are left out.
 [[nodiscard]] std::vector<PeerKind> select(const std::vector<PeerKind>& kinds, const std::vector<std::string>& names);
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -5,7 +5,7 @@
 
 #include "depthgrid/simulation/arrangement.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 using simulation::Arm;
 using simulation::BodyKind;
@@ -80,4 +80,4 @@ const Workcell& WorkcellScene::at(double time_s) {
   return cell_;
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -7,7 +7,7 @@
 #include "depthgrid/simulation/person_script.hpp"
 #include "depthgrid/simulation/workcell.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// What the arm is made of.
 enum class ArmShape : std::uint8_t { capsules, meshes };
@@ -33,4 +33,4 @@ class WorkcellScene {
   std::optional<std::size_t> box_body_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -9,7 +9,7 @@
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -190,4 +190,4 @@ std::span<const Frame> Workload::frames(int frame_set) const noexcept {
   return std::span(frames_).subspan(static_cast<std::size_t>(frame_set) * rig_.cameras.size(), rig_.cameras.size());
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

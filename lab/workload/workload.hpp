@@ -17,7 +17,7 @@
 #include "depthgrid/simulation/figures.hpp"
 #include "depthgrid/simulation/scene.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 inline constexpr int kWorkloadCameras = 8;
 inline constexpr int kWorkloadFrameSets = 30;
@@ -72,4 +72,4 @@ class Workload {
   std::vector<Frame> frames_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -6,7 +6,7 @@
 
 #include "depthgrid/core/depth_image.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 constexpr double kNoiseConstant = 0.0005;
@@ -85,4 +85,4 @@ std::span<const Frame> NoisyWorkload::frames(int frame_set) const noexcept {
   return std::span(frames_).subspan(static_cast<std::size_t>(frame_set) * cameras_, cameras_);
 }
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

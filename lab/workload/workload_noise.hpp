@@ -13,7 +13,7 @@
 #include "depthgrid/core/margin.hpp"
 #include "lab/workload/workload.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 
 /// Metres around the robot in its near and far images: more than noise and margin of a sensor 2.7 m away, so that the
 /// robot's own pixels are recognised.
@@ -35,4 +35,4 @@ class NoisyWorkload {
   std::vector<Frame> frames_;
 };
 
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -16,7 +16,7 @@
 
 // NOLINTBEGIN(cppcoreguidelines-pro-type-vararg): printf lays out the table; streams would need a line a column
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -57,13 +57,13 @@ std::vector<Proximity> evaluate_grid(const simulation::DemoScene& demo, const Ri
 std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const Rig& rig, std::span<const Frame> frames,
                                        const grid::DepthQuantisation& quantisation, double rho_m) {
   const grid::DepthGrid space(rig.cameras[0].intrinsics, quantisation);
-  search::Settings settings;
-  settings.space = search::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
-  settings.policies = {search::Policy::obstacle, search::Policy::ignored, search::Policy::obstacle, 0.0};
+  views::Settings settings;
+  settings.space = views::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
+  settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0.0};
   settings.margins.assign(rig.cameras.size(), CameraMargins{});
   settings.rho_m = rho_m;
   settings.v_max_m_s = 0.0;
-  search::ViewStore store(rig, settings);
+  views::ViewStore store(rig, settings);
   for (std::size_t k = 0; k < frames.size(); ++k) {
     (void)store.update(k, frames[k]);
   }
@@ -180,6 +180,6 @@ void add_demo_command(CLI::App& app) {
   command->callback([options] { run_demo(*options); });
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program
 
 // NOLINTEND(cppcoreguidelines-pro-type-vararg)

@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 struct DemoOptions {
   std::string method = "corrected";  ///< letter, corrected or search
@@ -17,4 +17,4 @@ void run_demo(const DemoOptions& options);
 /// Adds the subcommand; it runs when the command line is parsed.
 void add_demo_command(CLI::App& app);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -8,7 +8,7 @@
 #include "report/depth_picture.hpp"
 #include "report/free_space_slice.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -226,4 +226,4 @@ void write_demo_picture(const std::filesystem::path& file, const simulation::Dem
   canvas.save_png(file);
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

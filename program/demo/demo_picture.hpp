@@ -10,7 +10,7 @@
 #include "depthgrid/grid/depth_grid.hpp"
 #include "depthgrid/simulation/demo_scene.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// What the demo computed, one answer a control point.
 struct DemoAnswers {
@@ -24,4 +24,4 @@ void write_demo_picture(const std::filesystem::path& file, const simulation::Dem
                         std::span<const Frame> frames, const DemoAnswers& answers,
                         const grid::DepthQuantisation& quantisation);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

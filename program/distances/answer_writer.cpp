@@ -7,7 +7,7 @@
 
 #include "report/number_text.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -97,27 +97,27 @@ std::string AnswerWriter::header() const {
          (columns_.shapes ? ",radius_m,end_x_m,end_y_m,end_z_m,on_axis_x_m,on_axis_y_m,on_axis_z_m\n" : "\n");
 }
 
-std::string AnswerWriter::line(int frame, std::optional<double> time_s, const input::ControlPoint& point,
+std::string AnswerWriter::line(int frame, std::optional<double> time_s, const files::ControlPoint& point,
                                const PointAnswer& answer) const {
   const Proximity& nearest = answer.nearest;
   Row row;
   row.frame = frame;
-  row.time_s = time_s ? micro_text(*time_s) : std::string();
+  row.time_s = time_s ? report::micro_text(*time_s) : std::string();
   row.point = point.id;
-  row.position = Texts::of(point.p_m, exact_text);
-  row.distance_m = has_distance(nearest) ? micro_text_down(nearest.distance_m) : std::string();
+  row.position = Texts::of(point.p_m, report::exact_text);
+  row.distance_m = has_distance(nearest) ? report::micro_text_down(nearest.distance_m) : std::string();
   row.state = to_string(nearest.state);
   row.camera = nearest.camera ? rig_.cameras[*nearest.camera].id : std::string();
-  row.nearest = Texts::of(T_output_world_ * nearest.nearest_world, micro_text);
-  row.direction = Texts::of(T_output_world_.linear() * nearest.direction_world, micro_text);
+  row.nearest = Texts::of(T_output_world_ * nearest.nearest_world, report::micro_text);
+  row.direction = Texts::of(T_output_world_.linear() * nearest.direction_world, report::micro_text);
   row.stale = nearest.stale;
   row.budget = nearest.budget;
-  row.known_to_m = micro_text_down(nearest.known_to_m);
-  row.hybrid_direction = Texts::of(T_output_world_.linear() * answer.hybrid_direction_world, micro_text);
+  row.known_to_m = report::micro_text_down(nearest.known_to_m);
+  row.hybrid_direction = Texts::of(T_output_world_.linear() * answer.hybrid_direction_world, report::micro_text);
   row.obstacle_points = answer.obstacle_points;
-  row.radius_m = exact_text(point.radius_m);
-  row.end = point.end_m ? Texts::of(*point.end_m, exact_text) : Texts{};
-  row.on_axis = Texts::of(T_output_world_ * answer.on_axis_world, micro_text);
+  row.radius_m = report::exact_text(point.radius_m);
+  row.end = point.end_m ? Texts::of(*point.end_m, report::exact_text) : Texts{};
+  row.on_axis = Texts::of(T_output_world_ * answer.on_axis_world, report::micro_text);
   return format_ == AnswerFormat::csv ? csv(row) : json(row);
 }
 
@@ -191,4 +191,4 @@ std::string AnswerWriter::json(const Row& row) const {
   return std::string(buffer.GetString(), buffer.GetSize()) + '\n';
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

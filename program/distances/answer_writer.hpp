@@ -10,7 +10,7 @@
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/files/control_points.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 enum class AnswerFormat : std::uint8_t { csv, json_lines };
 
@@ -42,7 +42,7 @@ class AnswerWriter {
   [[nodiscard]] std::string header() const;
 
   /// One line. `point` is in the output frame; `time_s` is empty where the recording does not say.
-  [[nodiscard]] std::string line(int frame, std::optional<double> time_s, const input::ControlPoint& point,
+  [[nodiscard]] std::string line(int frame, std::optional<double> time_s, const files::ControlPoint& point,
                                  const PointAnswer& answer) const;
 
  private:
@@ -56,4 +56,4 @@ class AnswerWriter {
   AnswerColumns columns_;
 };
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -22,7 +22,7 @@
 #include "program/usage_error.hpp"
 #include "report/progress_line.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -105,7 +105,7 @@ bool states_exposure(const SensorOptions& options, const RigCamera& camera) {
 }
 
 /// What the rig file says and what the user says must fit together.
-void check(const input::Recording& recording, const DistancesOptions& options,
+void check(const files::Recording& recording, const DistancesOptions& options,
            const std::vector<CameraMargins>& margins) {
   const auto& cameras = recording.rig().cameras;
   if (std::any_of(cameras.begin(), cameras.end(),
@@ -132,12 +132,12 @@ void run(const DistancesOptions& options) {
   const bool searches = options.evaluation.method == "search";
   const Points points = control_points(options.points);
 
-  input::RecordingOptions recording_options;
+  files::RecordingOptions recording_options;
   recording_options.camera_ids = options.cameras;
   recording_options.near_m = near_limit_m(options.sensor);
   recording_options.far_m = far_limit_m(options.sensor);
   recording_options.clamp_beyond_far = clamp_beyond_far(options.sensor);
-  input::Recording recording(options.recording, recording_options);
+  files::Recording recording(options.recording, recording_options);
   const auto margins = camera_margins(options.sensor, recording.rig(), searches);
   check(recording, options, margins);
 
@@ -165,7 +165,7 @@ void run(const DistancesOptions& options) {
   }
   output.write(writer.header());
 
-  ProgressLine progress("frame", indices.size());
+  report::ProgressLine progress("frame", indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const int index = indices[i];
     const int number = recording.frame_number(index);
@@ -254,4 +254,4 @@ void add_distances_command(CLI::App& app) {
   command->callback([options] { run(*options); });
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -3,9 +3,9 @@
 
 #include <CLI/App.hpp>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Adds the subcommand; it runs when the command line is parsed. Throws UsageError or Error from there.
 void add_distances_command(CLI::App& app);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -5,7 +5,7 @@
 
 #include "program/usage_error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -111,4 +111,4 @@ grid::DepthQuantisation depth_quantisation(const EvaluationOptions& options, con
   return cells;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

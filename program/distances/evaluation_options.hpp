@@ -10,7 +10,7 @@
 #include "depthgrid/grid/depth_grid.hpp"
 #include "depthgrid/grid/evaluation.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Texts and numbers as given; what is absent takes the default of the library.
 struct EvaluationOptions {
@@ -41,4 +41,4 @@ grid::EvaluationSettings evaluation_settings(const EvaluationOptions& options,
 grid::DepthQuantisation depth_quantisation(const EvaluationOptions& options, const grid::DepthQuantisation& base,
                                            std::optional<double> reach_m);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -8,7 +8,7 @@
 #include "depthgrid/files/control_points.hpp"
 #include "program/distances/answer_writer.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 class FrameEvaluator {
  public:
@@ -21,9 +21,9 @@ class FrameEvaluator {
   [[nodiscard]] virtual bool update(std::span<const Frame> frames) = 0;
 
   /// One answer a point, in their order; the points are in the world frame.
-  [[nodiscard]] virtual std::vector<PointAnswer> evaluate(std::span<const input::ControlPoint> points_world) = 0;
+  [[nodiscard]] virtual std::vector<PointAnswer> evaluate(std::span<const files::ControlPoint> points_world) = 0;
 
   [[nodiscard]] virtual AnswerColumns columns() const = 0;
 };
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

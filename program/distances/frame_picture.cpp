@@ -7,7 +7,7 @@
 #include "report/canvas.hpp"
 #include "report/depth_picture.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -58,4 +58,4 @@ void save_frame_picture(const std::filesystem::path& file, const std::string& ti
   canvas.save_png(file);
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -9,7 +9,7 @@
 #include "depthgrid/core/rig.hpp"
 #include "report/answers_picture.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 using PictureLine = report::AnsweredPoint;
 
@@ -19,4 +19,4 @@ using PictureLine = report::AnsweredPoint;
 void save_frame_picture(const std::filesystem::path& file, const std::string& title, const Rig& rig,
                         std::span<const Frame> frames, std::span<const PictureLine> lines, double rho_m);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -10,7 +10,7 @@
 #include "depthgrid/grid/map/map_file.hpp"
 #include "report/progress_line.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -23,10 +23,10 @@ class GridFrameEvaluator final : public FrameEvaluator {
 
   bool update(std::span<const Frame> frames) override { return evaluator_.update(frames); }
 
-  std::vector<PointAnswer> evaluate(std::span<const input::ControlPoint> points_world) override {
+  std::vector<PointAnswer> evaluate(std::span<const files::ControlPoint> points_world) override {
     std::vector<PointAnswer> answers;
     answers.reserve(points_world.size());
-    for (const input::ControlPoint& point : points_world) {
+    for (const files::ControlPoint& point : points_world) {
       if (point.radius_m > 0 || point.end_m) {
         fail("control point '", point.id, "' has a ", point.end_m ? "second end" : "radius",
              ", which only --method search knows");
@@ -46,15 +46,15 @@ class GridFrameEvaluator final : public FrameEvaluator {
 };
 
 /// The deepest reading of the principal camera in the frames chosen: the grid then holds everything it sees.
-double deepest_reading_m(input::Recording& recording, std::size_t camera, const MeasurementRule& rule,
+double deepest_reading_m(files::Recording& recording, std::size_t camera, const MeasurementRule& rule,
                          const std::vector<int>& indices) {
-  ProgressLine progress("looking for the deepest reading, frame", indices.size());
-  input::Gray16Image image;
+  report::ProgressLine progress("looking for the deepest reading, frame", indices.size());
+  files::Gray16Image image;
   const auto& intrinsics = recording.rig().cameras[camera].intrinsics;
   double deepest_m = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const auto file = recording.depth_file(indices[i], camera);
-    input::read_png16(file, image);
+    files::read_png16(file, image);
     if (image.width_px != intrinsics.width_px || image.height_px != intrinsics.height_px) {
       (void)recording.read(indices[i]);  // says what is wrong with this frame
     }
@@ -87,7 +87,7 @@ std::shared_ptr<const grid::DepthGridMap> load_map(const GridSource& source, con
 
 }  // namespace
 
-std::unique_ptr<FrameEvaluator> make_grid_evaluator(input::Recording& recording, const std::vector<int>& frame_indices,
+std::unique_ptr<FrameEvaluator> make_grid_evaluator(files::Recording& recording, const std::vector<int>& frame_indices,
                                                     const EvaluationOptions& options, const GridSource& source,
                                                     const grid::EvaluationSettings& settings) {
   const Rig& rig = recording.rig();
@@ -104,4 +104,4 @@ std::unique_ptr<FrameEvaluator> make_grid_evaluator(input::Recording& recording,
   return std::make_unique<GridFrameEvaluator>(rig, source.principal, cells, settings, load_map(source, rig, cells));
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

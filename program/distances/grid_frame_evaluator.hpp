@@ -9,7 +9,7 @@
 #include "program/distances/evaluation_options.hpp"
 #include "program/distances/frame_evaluator.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Where the depth cells come from besides the options.
 struct GridSource {
@@ -19,8 +19,8 @@ struct GridSource {
 
 /// `frame_indices`: the frames that will be evaluated; where neither the options nor the camera say how far the grid
 /// reaches they are read for the deepest reading. Throws Error.
-std::unique_ptr<FrameEvaluator> make_grid_evaluator(input::Recording& recording, const std::vector<int>& frame_indices,
+std::unique_ptr<FrameEvaluator> make_grid_evaluator(files::Recording& recording, const std::vector<int>& frame_indices,
                                                     const EvaluationOptions& options, const GridSource& source,
                                                     const grid::EvaluationSettings& settings);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -4,11 +4,11 @@
 
 #include "program/usage_error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
-input::ControlPoint command_line_point(const std::string& text, std::size_t number) {
+files::ControlPoint command_line_point(const std::string& text, std::size_t number) {
   std::string id = "p" + std::to_string(number);
   std::string coordinates = text;
   if (const auto equals = text.find('='); equals != std::string::npos) {
@@ -19,13 +19,13 @@ input::ControlPoint command_line_point(const std::string& text, std::size_t numb
     }
   }
   try {
-    return input::parse_control_point(coordinates, id);
+    return files::parse_control_point(coordinates, id);
   } catch (const Error& error) {
     throw UsageError("--point " + text + ": " + error.what());
   }
 }
 
-void check_names(const std::vector<input::ControlPoint>& points, int frame_number) {
+void check_names(const std::vector<files::ControlPoint>& points, int frame_number) {
   std::set<std::string> names;
   for (const auto& point : points) {
     if (!names.insert(point.id).second) {
@@ -36,8 +36,8 @@ void check_names(const std::vector<input::ControlPoint>& points, int frame_numbe
 
 }  // namespace
 
-std::vector<input::ControlPoint> Points::at(int frame_number) const {
-  std::vector<input::ControlPoint> points = of_command_line;
+std::vector<files::ControlPoint> Points::at(int frame_number) const {
+  std::vector<files::ControlPoint> points = of_command_line;
   const auto more = of_file.at(frame_number);
   points.insert(points.end(), more.begin(), more.end());
   check_names(points, frame_number);
@@ -50,15 +50,15 @@ Points control_points(const PointOptions& options) {
     points.of_command_line.push_back(command_line_point(text, points.of_command_line.size() + 1));
   }
   if (!options.file.empty()) {
-    points.of_file = input::load_control_points(options.file);
+    points.of_file = files::load_control_points(options.file);
   } else if (points.of_command_line.empty()) {
     fail_usage("no control point: give --point x,y,z (metres, repeatable) or --points FILE.csv");
   }
   return points;
 }
 
-std::vector<input::ControlPoint> in_world(std::vector<input::ControlPoint> points, const Pose& T_world_output) {
-  for (input::ControlPoint& point : points) {
+std::vector<files::ControlPoint> in_world(std::vector<files::ControlPoint> points, const Pose& T_world_output) {
+  for (files::ControlPoint& point : points) {
     point.p_m = T_world_output * point.p_m;
     if (point.end_m) {
       point.end_m = T_world_output * *point.end_m;
@@ -67,4 +67,4 @@ std::vector<input::ControlPoint> in_world(std::vector<input::ControlPoint> point
   return points;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

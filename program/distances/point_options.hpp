@@ -7,7 +7,7 @@
 #include "depthgrid/core/pose.hpp"
 #include "depthgrid/files/control_points.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 struct PointOptions {
   std::vector<std::string> texts;  ///< x,y,z or name=x,y,z, or with radius and end
@@ -16,17 +16,17 @@ struct PointOptions {
 
 /// Control points of the command line, in every frame, and those of a file, which may move.
 struct Points {
-  std::vector<input::ControlPoint> of_command_line;
-  input::ControlPoints of_file;
+  std::vector<files::ControlPoint> of_command_line;
+  files::ControlPoints of_file;
 
   /// Throws Error when two of one frame have the same name.
-  [[nodiscard]] std::vector<input::ControlPoint> at(int frame_number) const;
+  [[nodiscard]] std::vector<files::ControlPoint> at(int frame_number) const;
 };
 
 /// Throws UsageError when there is none or one cannot be read, and Error where the file is broken.
 Points control_points(const PointOptions& options);
 
 /// The points, given in the output frame, in the world's.
-std::vector<input::ControlPoint> in_world(std::vector<input::ControlPoint> points, const Pose& T_world_output);
+std::vector<files::ControlPoint> in_world(std::vector<files::ControlPoint> points, const Pose& T_world_output);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

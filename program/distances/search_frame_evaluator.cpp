@@ -1,30 +1,30 @@
 #include "program/distances/search_frame_evaluator.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
 class SearchFrameEvaluator final : public FrameEvaluator {
  public:
-  SearchFrameEvaluator(const Rig& rig, const search::Settings& settings, const search::Budget& budget, bool hybrid)
+  SearchFrameEvaluator(const Rig& rig, const views::Settings& settings, const search::Budget& budget, bool hybrid)
       : store_(rig, settings), budget_(budget), hybrid_(hybrid) {}
 
   bool update(std::span<const Frame> frames) override {
     bool complete = true;
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      complete = store_.update(k, frames[k]) == search::UpdateResult::taken && complete;
+      complete = store_.update(k, frames[k]) == views::UpdateResult::taken && complete;
     }
     return complete;
   }
 
-  std::vector<PointAnswer> evaluate(std::span<const input::ControlPoint> points_world) override {
+  std::vector<PointAnswer> evaluate(std::span<const files::ControlPoint> points_world) override {
     std::vector<search::Primitive> primitives;
     primitives.reserve(points_world.size());
-    for (const input::ControlPoint& point : points_world) {
+    for (const files::ControlPoint& point : points_world) {
       primitives.push_back(primitive_of(point));
     }
     std::vector<search::Answer> found(primitives.size());
-    const search::Snapshot snapshot = store_.snapshot();
+    const views::Snapshot snapshot = store_.snapshot();
     if (hybrid_) {
       search_.hybrid(snapshot, primitives, found, budget_);
     } else {
@@ -41,7 +41,7 @@ class SearchFrameEvaluator final : public FrameEvaluator {
   [[nodiscard]] AnswerColumns columns() const override { return {hybrid_, false, true}; }
 
  private:
-  search::ViewStore store_;
+  views::ViewStore store_;
   search::Search search_;
   search::Budget budget_;
   bool hybrid_;
@@ -49,13 +49,13 @@ class SearchFrameEvaluator final : public FrameEvaluator {
 
 }  // namespace
 
-std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const search::Settings& settings,
+std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const views::Settings& settings,
                                                       const search::Budget& budget, bool hybrid) {
   return std::make_unique<SearchFrameEvaluator>(rig, settings, budget, hybrid);
 }
 
-search::Primitive primitive_of(const input::ControlPoint& point) noexcept {
+search::Primitive primitive_of(const files::ControlPoint& point) noexcept {
   return {point.p_m, point.end_m.value_or(point.p_m), point.radius_m};
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -7,13 +7,13 @@
 #include "depthgrid/search/search.hpp"
 #include "program/distances/frame_evaluator.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// The rig's world frame is the one of points and answers. Throws Error when rig or settings are not valid.
-std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const search::Settings& settings,
+std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const views::Settings& settings,
                                                       const search::Budget& budget, bool hybrid);
 
 /// The primitive that a control point is.
-[[nodiscard]] search::Primitive primitive_of(const input::ControlPoint& point) noexcept;
+[[nodiscard]] search::Primitive primitive_of(const files::ControlPoint& point) noexcept;
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -9,7 +9,7 @@
 #include "depthgrid/files/number_parsing.hpp"
 #include "program/usage_error.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -20,17 +20,17 @@ CLI::Option* add_policy(CLI::App& command, const char* option, std::optional<std
       ->group("Search");
 }
 
-search::Policy policy_of(const std::optional<std::string>& text) {
-  return !text ? search::Policy::undeclared : text == "ignored" ? search::Policy::ignored : search::Policy::obstacle;
+views::Policy policy_of(const std::optional<std::string>& text) {
+  return !text ? views::Policy::undeclared : text == "ignored" ? views::Policy::ignored : views::Policy::obstacle;
 }
 
 /// "x0,y0,z0,x1,y1,z1", metres.
-search::BoxSpace box_of(const std::string& text) {
+views::BoxSpace box_of(const std::string& text) {
   std::array<double, 6> numbers{};
   std::string_view rest = text;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const std::size_t comma = rest.find(',');
-    const auto number = input::parse_number<double>(rest.substr(0, comma));
+    const auto number = files::parse_number<double>(rest.substr(0, comma));
     if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (k + 1 == numbers.size())) {
       fail_usage("--box ", text, ": must be six numbers x0,y0,z0,x1,y1,z1, metres: the low and the high corner");
     }
@@ -101,17 +101,17 @@ void refuse_search_options(const SearchOptions& options, const std::string& meth
   }
 }
 
-search::Settings search_settings(const SearchOptions& options, const EvaluationOptions& evaluation,
-                                 std::size_t principal, const std::vector<CameraMargins>& margins) {
+views::Settings search_settings(const SearchOptions& options, const EvaluationOptions& evaluation,
+                                std::size_t principal, const std::vector<CameraMargins>& margins) {
   check_stated(options, evaluation);
-  search::Settings settings;
+  views::Settings settings;
   if (options.box) {
     if (options.d_max_m || evaluation.d_min_m) {
       fail_usage("--box and --d-min, --d-max exclude each other: the space of interest is a box or a camera's view");
     }
     settings.space = box_of(*options.box);
   } else {
-    settings.space = search::FrustumSpace{principal, *evaluation.d_min_m, *options.d_max_m};
+    settings.space = views::FrustumSpace{principal, *evaluation.d_min_m, *options.d_max_m};
   }
   settings.policies.unobserved = policy_of(options.unobserved);
   settings.policies.outside = policy_of(evaluation.outside);
@@ -133,4 +133,4 @@ search::Budget search_budget(const SearchOptions& options) {
   return budget;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

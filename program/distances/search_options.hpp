@@ -11,7 +11,7 @@
 #include "depthgrid/search/search.hpp"
 #include "program/distances/evaluation_options.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// As given. What decides about obstacles has no default.
 struct SearchOptions {
@@ -32,10 +32,10 @@ void refuse_search_options(const SearchOptions& options, const std::string& meth
 
 /// `principal`: the camera whose view is the space of interest where no --box is given. Throws UsageError that names
 /// every option which is missing.
-search::Settings search_settings(const SearchOptions& options, const EvaluationOptions& evaluation,
-                                 std::size_t principal, const std::vector<CameraMargins>& margins);
+views::Settings search_settings(const SearchOptions& options, const EvaluationOptions& evaluation,
+                                std::size_t principal, const std::vector<CameraMargins>& margins);
 
 /// What one call may cost. Throws UsageError unless positive.
 search::Budget search_budget(const SearchOptions& options);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -73,4 +73,4 @@ double suggested_pose_margin_m(const PairAgreement& agreement) noexcept {
   return agreement.intrusion_m.quantile_m(kCoveredShare);
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

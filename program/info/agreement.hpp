@@ -9,7 +9,7 @@
 #include "program/info/histogram.hpp"
 #include "program/info/surface.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Residuals of camera A's points in camera B, over any number of frames.
 ///
@@ -42,4 +42,4 @@ void add_pair(const Surface& a, const Surface& b, const PinholeCamera& camera_b,
 /// The pose margin that this pair suggests: 95 % of A's points then do not stand in space that B frees. NaN: no pairs.
 [[nodiscard]] double suggested_pose_margin_m(const PairAgreement& agreement) noexcept;
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -95,4 +95,4 @@ SensorMargin DepthNoise::suggested_margin() const {
   return margin;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -8,7 +8,7 @@
 #include "depthgrid/core/margin.hpp"
 #include "program/info/histogram.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Residuals of each pixel's depth to the straight line through its neighbours, by depth.
 ///
@@ -28,4 +28,4 @@ class DepthNoise {
   std::vector<Histogram> slices_;
 };
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -37,4 +37,4 @@ double Histogram::quantile_m(double q) const noexcept {
   return static_cast<double>(kBinCount - 1) * kBinSize_m;
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

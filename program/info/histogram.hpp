@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Bins of half a millimetre from 0 to 2 m; everything beyond shares one last bin.
 class Histogram {
@@ -20,4 +20,4 @@ class Histogram {
   std::int64_t count_ = 0;
 };
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

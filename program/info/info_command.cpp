@@ -15,7 +15,7 @@
 #include "program/usage_error.hpp"
 #include "report/progress_line.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -33,8 +33,8 @@ struct InfoOptions {
 };
 
 /// What the cameras measure on their own.
-void survey_images(input::Recording& recording, const std::vector<int>& indices, RecordingInfo& info) {
-  ProgressLine progress("reading frame", indices.size());
+void survey_images(files::Recording& recording, const std::vector<int>& indices, RecordingInfo& info) {
+  report::ProgressLine progress("reading frame", indices.size());
   DepthImage depth;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const auto frames = recording.read(indices[i]);
@@ -49,7 +49,7 @@ void survey_images(input::Recording& recording, const std::vector<int>& indices,
 }
 
 /// What every ordered pair of cameras agrees on.
-void compare_cameras(input::Recording& recording, const std::vector<int>& indices, const InfoOptions& options,
+void compare_cameras(files::Recording& recording, const std::vector<int>& indices, const InfoOptions& options,
                      RecordingInfo& info) {
   const Rig& rig = recording.rig();
   const std::size_t count = rig.cameras.size();
@@ -64,7 +64,7 @@ void compare_cameras(input::Recording& recording, const std::vector<int>& indice
   for (const auto& camera : info.cameras) {
     margins.push_back(camera.noise.suggested_margin());
   }
-  ProgressLine progress("comparing pairs of cameras,", indices.size() * info.pairs.size());
+  report::ProgressLine progress("comparing pairs of cameras,", indices.size() * info.pairs.size());
   std::vector<Surface> surfaces(count);
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const auto frames = recording.read(indices[i]);
@@ -98,11 +98,11 @@ void check(const InfoOptions& options) {
 
 void run(const InfoOptions& options) {
   check(options);
-  input::RecordingOptions recording_options;
+  files::RecordingOptions recording_options;
   recording_options.camera_ids = options.cameras;
   recording_options.near_m = options.near_m;
   recording_options.far_m = options.far_m;
-  input::Recording recording(options.recording, recording_options);
+  files::Recording recording(options.recording, recording_options);
   const int first = recording.frame_number(0);
   std::vector<int> indices = select_frames(options.frames, first, recording.frame_count());
   for (int& index : indices) {
@@ -151,4 +151,4 @@ void add_info_command(CLI::App& app) {
   command->callback([options] { run(*options); });
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <functional>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -34,7 +34,7 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
 }
 
-std::string cameras_text(const input::Recording& recording, const RecordingInfo& info) {
+std::string cameras_text(const files::Recording& recording, const RecordingInfo& info) {
   std::string text = "camera            size        no measurement   depth range      margin m(D) it suggests\n";
   for (std::size_t k = 0; k < info.cameras.size(); ++k) {
     const auto& camera = recording.rig().cameras[k];
@@ -146,7 +146,7 @@ void CameraSurvey::add(const DepthImage& depth) {
   noise.add(depth);
 }
 
-std::string to_text(const input::Recording& recording, const RecordingInfo& info, const InfoLimits& limits) {
+std::string to_text(const files::Recording& recording, const RecordingInfo& info, const InfoLimits& limits) {
   const Rig& rig = recording.rig();
   std::string text = rig.name.empty() ? std::string("recording") : rig.name;
   text += line(": %zu camera%s, %d frame%s (%d to %d), %d looked at, ", rig.cameras.size(),
@@ -176,4 +176,4 @@ std::string to_text(const input::Recording& recording, const RecordingInfo& info
 
 // NOLINTEND(cppcoreguidelines-pro-type-vararg, cert-dcl50-cpp)
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

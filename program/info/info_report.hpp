@@ -10,7 +10,7 @@
 #include "program/info/agreement.hpp"
 #include "program/info/depth_noise.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// One camera's images over all frames looked at.
 struct CameraSurvey {
@@ -41,6 +41,6 @@ struct InfoLimits {
   bool all_pairs = false;
 };
 
-std::string to_text(const input::Recording& recording, const RecordingInfo& info, const InfoLimits& limits);
+std::string to_text(const files::Recording& recording, const RecordingInfo& info, const InfoLimits& limits);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

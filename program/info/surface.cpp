@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -55,4 +55,4 @@ void make_surface(const PinholeCamera& camera, const DepthImage& depth, Surface&
   }
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -7,7 +7,7 @@
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/depth_image.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Camera frame, metres; index v * width_px + u. A point without measurement has z = 0, one without normal a zero
 /// normal. Points belong to the pixels' centres, normals point to the camera.
@@ -22,4 +22,4 @@ struct Surface {
 /// pixel in depth. Writes into `surface`, whose memory is used again.
 void make_surface(const PinholeCamera& camera, const DepthImage& depth, Surface& surface);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

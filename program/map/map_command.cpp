@@ -20,7 +20,7 @@
 #include "report/number_text.hpp"
 #include "report/progress_line.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 namespace {
 
@@ -58,7 +58,7 @@ Rig chosen_cameras(const BuildOptions& options) {
   if (std::filesystem::is_directory(file)) {
     file /= "rig.json";
   }
-  Rig rig = input::load_rig(file).rig;
+  Rig rig = files::load_rig(file).rig;
   if (!options.cameras.empty()) {
     std::vector<RigCamera> chosen;
     for (const std::string& id : options.cameras) {
@@ -98,14 +98,15 @@ void build(const BuildOptions& options) {
   settings.memory_limit_bytes =
       options.memory_gib ? static_cast<std::uint64_t>(*options.memory_gib * kGiB) : grid::available_memory_bytes();
   const grid::MapMemory memory = grid::estimate_map_memory(depth_grid, secondaries, storage);
-  print_line(storage_text(storage) + " for " + std::to_string(secondaries.size()) +
-             (secondaries.size() == 1 ? " secondary camera needs " : " secondary cameras needs ") +
-             (memory.safety_factor > 1 ? "about " : "") + size_text(memory.bytes) + " of memory" +
-             (memory.safety_factor > 1 ? " (from a sample, times " + exact_text(memory.safety_factor) + ")" : "") +
-             "; " + size_text(*settings.memory_limit_bytes) + " allowed");
+  print_line(
+      storage_text(storage) + " for " + std::to_string(secondaries.size()) +
+      (secondaries.size() == 1 ? " secondary camera needs " : " secondary cameras needs ") +
+      (memory.safety_factor > 1 ? "about " : "") + size_text(memory.bytes) + " of memory" +
+      (memory.safety_factor > 1 ? " (from a sample, times " + report::exact_text(memory.safety_factor) + ")" : "") +
+      "; " + size_text(*settings.memory_limit_bytes) + " allowed");
 
   const auto begin = std::chrono::steady_clock::now();
-  std::optional<ProgressLine> line;
+  std::optional<report::ProgressLine> line;
   settings.progress = [&line](const grid::MapBuildProgress& progress) {
     if (!line) {
       line.emplace("building, row", static_cast<std::size_t>(progress.total));
@@ -118,14 +119,14 @@ void build(const BuildOptions& options) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   grid::save_map(map, options.output);
   print_line(options.output + ": " + size_text(std::filesystem::file_size(options.output)) + ", built in " +
-             duration_text(seconds));
+             report::duration_text(seconds));
 }
 
 std::string camera_text(const PinholeCamera& camera) {
   const Eigen::Vector2d principal_point = principal_point_opencv(camera);
   return std::to_string(camera.width_px) + " x " + std::to_string(camera.height_px) + " px, fx " +
-         exact_text(camera.fx_px) + ", fy " + exact_text(camera.fy_px) + ", cx " + micro_text(principal_point.x()) +
-         ", cy " + micro_text(principal_point.y());
+         report::exact_text(camera.fx_px) + ", fy " + report::exact_text(camera.fy_px) + ", cx " +
+         report::micro_text(principal_point.x()) + ", cy " + report::micro_text(principal_point.y());
 }
 
 void info(const std::string& file) {
@@ -141,14 +142,15 @@ void info(const std::string& file) {
     text += ", " + std::to_string(header.rows) + " row spans";
   }
   text += "\ncalibration  " + std::string(fingerprint.str()) + "\nprincipal    " + camera_text(calibration.principal) +
-          "\ndepth cells  " + std::to_string(depth_grid.count()) + " from " + exact_text(depth_grid.d_min_m()) +
-          " to " + micro_text(depth_grid.d_max_m()) + " m, step " + exact_text(calibration.quantisation.step_m) +
-          " m, growth " + exact_text(calibration.quantisation.growth) + "\n";
+          "\ndepth cells  " + std::to_string(depth_grid.count()) + " from " + report::exact_text(depth_grid.d_min_m()) +
+          " to " + report::micro_text(depth_grid.d_max_m()) + " m, step " +
+          report::exact_text(calibration.quantisation.step_m) + " m, growth " +
+          report::exact_text(calibration.quantisation.growth) + "\n";
   for (std::size_t k = 0; k < calibration.secondaries.size(); ++k) {
     const Eigen::Vector3d centre = calibration.secondaries[k].T_secondary_principal.inverse().translation();
     text += "secondary " + std::to_string(k) + "  " + camera_text(calibration.secondaries[k].camera) + ", at (" +
-            micro_text(centre.x()) + ", " + micro_text(centre.y()) + ", " + micro_text(centre.z()) +
-            ") m in the principal camera's frame\n";
+            report::micro_text(centre.x()) + ", " + report::micro_text(centre.y()) + ", " +
+            report::micro_text(centre.z()) + ") m in the principal camera's frame\n";
   }
   OutputFile output("-");
   output.write(text);
@@ -198,4 +200,4 @@ void add_map_command(CLI::App& app) {
       "floor");
 }
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

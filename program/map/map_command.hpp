@@ -3,10 +3,10 @@
 
 #include <CLI/App.hpp>
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 
 /// Adds the subcommand with its own subcommands build and info; they run when the command line is parsed. Throws
 /// UsageError or Error from there.
 void add_map_command(CLI::App& app);
 
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

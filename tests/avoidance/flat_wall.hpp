@@ -22,12 +22,12 @@ inline Rig one_camera() {
   return rig;
 }
 
-inline search::Settings search_settings(const Rig& rig) {
-  search::Settings settings;
-  settings.space = search::BoxSpace{{-1.5, -1.5, -0.5}, {1.5, 1.5, 1.5}};
-  settings.policies = {.unobserved = search::Policy::obstacle,
-                       .outside = search::Policy::obstacle,
-                       .robot_pockets = search::Policy::obstacle};
+inline views::Settings search_settings(const Rig& rig) {
+  views::Settings settings;
+  settings.space = views::BoxSpace{{-1.5, -1.5, -0.5}, {1.5, 1.5, 1.5}};
+  settings.policies = {.unobserved = views::Policy::obstacle,
+                       .outside = views::Policy::obstacle,
+                       .robot_pockets = views::Policy::obstacle};
   settings.margins = camera_margins(rig);
   settings.v_max_m_s = 2;
   settings.rho_m = 0.5;

@@ -27,17 +27,17 @@ TEST(WiderVectors, TheLibraryAnswersAProgramForANewerProcessor) {
   rig.cameras.assign(3, camera);
   rig.cameras[1].id = "second";
   rig.cameras[2].id = "third";
-  search::Settings settings;
-  settings.space = search::BoxSpace{{-3, -3, -3}, {3, 3, 3}};
-  settings.policies = {search::Policy::ignored, search::Policy::ignored, search::Policy::obstacle, 0};
+  views::Settings settings;
+  settings.space = views::BoxSpace{{-3, -3, -3}, {3, 3, 3}};
+  settings.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::obstacle, 0};
   settings.margins.resize(3);
   settings.v_max_m_s = 0;
-  search::ViewStore store(rig, settings);
+  views::ViewStore store(rig, settings);
   const std::vector<float> wall_m(64 * 48, 2.0F);
   Frame frame;
   frame.depth = {wall_m.data(), DepthFormat::float32_metres, 64, 48, 0, 1.0};
   for (std::size_t k = 0; k < 3; ++k) {
-    ASSERT_EQ(store.update(k, frame), search::UpdateResult::taken);
+    ASSERT_EQ(store.update(k, frame), views::UpdateResult::taken);
   }
   search::Search search;
   std::vector<search::Answer> answers(2);

@@ -5,7 +5,7 @@
 
 #include "files/temporary_folder.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using test::message_of;
@@ -156,4 +156,4 @@ TEST(BrokenControlPoint, OfTheCommandLineNamesTheText) {
 }
 
 }  // namespace
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

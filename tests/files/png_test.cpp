@@ -11,7 +11,7 @@
 #include "files/temporary_folder.hpp"
 #include "support/random_run.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using test::message_of;
@@ -226,4 +226,4 @@ INSTANTIATE_TEST_SUITE_P(All, BrokenPng, ::testing::ValuesIn(kBroken),
                          [](const auto& broken) { return broken.param.name; });
 
 }  // namespace
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -7,7 +7,7 @@
 #include "depthgrid/files/recording.hpp"
 #include "files/temporary_folder.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 std::filesystem::path data_folder() {
@@ -102,4 +102,4 @@ TEST_F(RecordedData, PosesOfOneMovingKinectActAsCameras) {
 }
 
 }  // namespace
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -8,7 +8,7 @@
 #include "files/rig_text.hpp"
 #include "files/temporary_folder.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using test::message_of;
@@ -212,4 +212,4 @@ INSTANTIATE_TEST_SUITE_P(All, BrokenRecording, ::testing::ValuesIn(kBroken),
                          [](const auto& broken) { return broken.param.name; });
 
 }  // namespace
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

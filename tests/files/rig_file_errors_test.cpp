@@ -5,7 +5,7 @@
 #include "files/rig_text.hpp"
 #include "files/temporary_folder.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using test::message_of;
@@ -189,4 +189,4 @@ TEST(BrokenRigFile, FolderIsNoRigFile) {
 }
 
 }  // namespace
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -12,7 +12,7 @@
 #include "files/temporary_folder.hpp"
 #include "support/random_run.hpp"
 
-namespace depthgrid::input {
+namespace depthgrid::files {
 namespace {
 
 using test::message_of;
@@ -307,4 +307,4 @@ TEST(RigFile, ExampleOfTheDocumentsLoads) {
 }
 
 }  // namespace
-}  // namespace depthgrid::input
+}  // namespace depthgrid::files

@@ -11,7 +11,7 @@
 #include "lab/campaign/state_file.hpp"
 #include "reference/search_problem_run.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 std::string read(const std::string& file) {
@@ -123,4 +123,4 @@ TEST(Campaign, PutsItsTablesBetweenTheMarkers) {
 }
 
 }  // namespace
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

@@ -10,7 +10,7 @@
 #include "depthgrid/core/error.hpp"
 #include "lab/workload/workload_noise.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 double quantile(const std::vector<double>& sorted, double share) {
@@ -138,4 +138,4 @@ TEST(Workload, ImpossibleSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab

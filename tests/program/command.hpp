@@ -36,8 +36,8 @@ inline CommandResult run_command(const std::string& arguments, const TemporaryFo
 }
 
 /// Two cameras 0.4 m apart look along z at a wall 2 m away; two frames, ten a second. Floor frame: world, 1 m up.
-inline input::RigFile wall_rig() {
-  input::RigFile file;
+inline files::RigFile wall_rig() {
+  files::RigFile file;
   file.rig.name = "wall";
   for (const double x : {0.0, 0.4}) {
     RigCamera camera;
@@ -56,12 +56,12 @@ inline input::RigFile wall_rig() {
 
 /// Writes the recording into the folder.
 inline void write_wall(const TemporaryFolder& folder) {
-  const input::RigFile file = wall_rig();
-  input::save_rig(file, folder / "rig.json");
+  const files::RigFile file = wall_rig();
+  files::save_rig(file, folder / "rig.json");
   const std::vector<std::uint16_t> wall(std::size_t{64} * 48, 2000);
   for (const auto& pattern : file.depth_files) {
     for (int frame = 5; frame < 7; ++frame) {
-      input::write_png_gray16(folder / input::depth_file_name(pattern, frame), 64, 48, wall);
+      files::write_png_gray16(folder / files::depth_file_name(pattern, frame), 64, 48, wall);
     }
   }
 }

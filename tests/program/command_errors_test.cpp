@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
              [](const TemporaryFolder& f) {
                auto file = wall_rig();
                file.rig.T_floor_world.reset();
-               input::save_rig(file, f / "rig.json");
+               files::save_rig(file, f / "rig.json");
              },
              kGood + kPoint + "--in floor", 1,
              "--in floor: the rig file has no T_floor_world, so there is no floor frame; use --in world"}),
@@ -275,7 +275,7 @@ void remove_first_pose(const TemporaryFolder& folder) {
 /// A camera that measures nothing in any frame.
 void write_blind(const TemporaryFolder& folder, const std::string& camera) {
   for (int frame = 5; frame < 7; ++frame) {
-    input::write_png_gray16(folder / input::depth_file_name(camera + "_%03d.png", frame), 64, 48,
+    files::write_png_gray16(folder / files::depth_file_name(camera + "_%03d.png", frame), 64, 48,
                             std::vector<std::uint16_t>(std::size_t{64} * 48));
   }
 }
@@ -301,7 +301,7 @@ INSTANTIATE_TEST_SUITE_P(
              kGood + kPoint, 1, "./right_006.png: cannot be opened: No such file or directory"},
         Case{"WrongImageSize",
              [](const TemporaryFolder& f) {
-               input::write_png_gray16(f / "left_005.png", 32, 48, std::vector<std::uint16_t>(std::size_t{32} * 48));
+               files::write_png_gray16(f / "left_005.png", 32, 48, std::vector<std::uint16_t>(std::size_t{32} * 48));
              },
              kGood + kPoint, 1, "./left_005.png: is 32 x 48 pixels, the calibration of camera 'left' is for 64 x 48"},
         Case{"RigWithoutPose", remove_first_pose, kGood + kPoint, 1,
@@ -327,7 +327,7 @@ INSTANTIATE_TEST_SUITE_P(
              [](const TemporaryFolder& f) {
                auto file = wall_rig();
                file.simultaneous = false;
-               input::save_rig(file, f / "rig.json");
+               files::save_rig(file, f / "rig.json");
              },
              kGood + kPoint, 2,
              "the rig file says \"simultaneous\": false, so images of one number are of different times; give "

@@ -136,7 +136,7 @@ TEST(Distances, ClampBeyondFarHoldsWithLensDistortion) {
     for (auto& camera : file.rig.cameras) {
       camera.distortion = make_distortion(Distortion::Model::plumb_bob, std::vector<double>{k1, 0, 0, 0, 0});
     }
-    input::save_rig(file, folder / "rig.json");
+    files::save_rig(file, folder / "rig.json");
     const std::string question = "distances . --point 0.2,0,1.7 --frames 5 --far 1.9";
     const auto clamped = run_command(question + " --beyond-far clamp", folder);
     const auto invalid = run_command(question + " --beyond-far invalid", folder);
@@ -154,7 +154,7 @@ TEST(Distances, CombineDifferentTimesWhenTheUserSaysSo) {
   const auto simultaneous = run_command(question, folder);
   auto file = wall_rig();
   file.simultaneous = false;
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   EXPECT_EQ(run_command(question, folder).exit_code, 2);
   EXPECT_EQ(run_command(question + " --static-scene", folder).out, simultaneous.out);
   EXPECT_EQ(run_command(question + " --margin-time 0.01", folder).exit_code, 0);
@@ -221,7 +221,7 @@ TEST(Info, SeesACameraThatStandsWrong) {
   write_wall(folder);
   auto file = wall_rig();
   file.rig.cameras[1].T_world_camera.translation().z() = -0.2;  // its wall is 0.2 m nearer than the other's
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   const auto result = run_command("info .", folder);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, ::testing::ContainsRegex("left to right +20[01] mm +0 % +20[01] mm +0 % +0 % +100 %"));

@@ -5,7 +5,7 @@
 
 #include "program/info/depth_noise.hpp"
 
-namespace depthgrid::app {
+namespace depthgrid::program {
 namespace {
 
 TEST(Histogram, CountsMoreThan32Bits) {
@@ -39,4 +39,4 @@ TEST(DepthNoise, LeavesOutDepthsBeyondItsSlices) {
 }
 
 }  // namespace
-}  // namespace depthgrid::app
+}  // namespace depthgrid::program

@@ -149,7 +149,7 @@ TEST(SearchCommand, CombinesDifferentTimesOnlyWhereTheMarginsAllowForIt) {
   write_wall(folder);
   auto file = wall_rig();
   file.simultaneous = false;
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   const std::string question = kSearch + kPoint + "--sensor ideal ";
   EXPECT_EQ(run_command(question, folder).exit_code, 2);
   EXPECT_EQ(run_command(question + "--time-uncertainty 0.01", folder).exit_code, 2) << "but nothing moves";
@@ -177,7 +177,7 @@ TEST(Margins, OfTheRigFileCountUnlessTheCommandSaysOtherwise) {
   for (RigCamera& camera : file.rig.cameras) {
     camera.margins = CameraMargins{{0.05, 0, 0, 1}, 0, 0, 0, 0};
   }
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   for (const std::string method : {"search", "corrected"}) {
     const double cell_m = method == "search" ? 0.0051 : 0.0151;
     EXPECT_NEAR(distance_m(folder, method, ""), 0.25, cell_m) << method;
@@ -193,7 +193,7 @@ TEST(Margins, TheGridTakesTheWorstOfItsCameras) {
   auto file = wall_rig();
   file.rig.cameras[0].margins = CameraMargins{{0.05, 0, 0, 1}, 0, 0, 0, 0};
   file.rig.cameras[1].margins = CameraMargins{{0.02, 0, 0, 1}, 0.03, 0, 0, 0};
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   EXPECT_NEAR(distance_m(folder, "corrected", ""), 0.22, 0.0151);
   EXPECT_NEAR(distance_m(folder, "search", ""), 0.25, 0.0051) << "each camera its own: either frees what it frees";
 }
@@ -205,7 +205,7 @@ TEST(Margins, OfASensorReplaceTheNoiseAndKeepTheCalibration) {
   for (RigCamera& camera : file.rig.cameras) {
     camera.margins = CameraMargins{{0.1, 0, 0, 1}, 0.03, 0, 0, 0};
   }
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   const double kinect_m = 0.00245 + 0.00633 * 4;
   EXPECT_NEAR(distance_m(folder, "search", "--sensor kinect-v1"), 0.3 - kinect_m - 0.03, 0.0051);
 }
@@ -228,10 +228,10 @@ TEST(Margins, OfWhatMovesNeedTheExposure) {
   for (RigCamera& camera : file.rig.cameras) {
     camera.margins = CameraMargins{{0.05, 0, 0, 1}, 0, 0, 0.02, 0};
   }
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   EXPECT_NEAR(rows_of(run_command(question, folder)).at(0).number("distance_m"), 0.21, 0.0051);
   file.rig.cameras[1].margins->half_exposure_s = 0;
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   EXPECT_EQ(run_command(question, folder).exit_code, 2);
   EXPECT_EQ(run_command(question + "--cameras left", folder).exit_code, 0);
 }
@@ -242,7 +242,7 @@ TEST(Margins, InfoShowsThoseOfTheRigFile) {
   auto file = wall_rig();
   file.rig.cameras[1].sensor = "kinect_v1";
   file.rig.cameras[1].margins = CameraMargins{{0.00245, 0, 0.00633, 2}, 0.01, 0.002, 0.0333, 0};
-  input::save_rig(file, folder / "rig.json");
+  files::save_rig(file, folder / "rig.json");
   const auto result = run_command("info .", folder);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("\nleft              none\n"));

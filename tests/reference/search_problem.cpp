@@ -30,7 +30,7 @@ CameraMargins draw_margins(Random& random, bool lateral) {
   return margins;
 }
 
-search::BoxSpace draw_box(Random& random) {
+views::BoxSpace draw_box(Random& random) {
   const Vector3d centre = random.in_cube(0.3);
   Vector3d half;
   for (double& side_m : half) {
@@ -77,7 +77,7 @@ void draw_primitives(Random& random, int count, SearchProblem& problem) {
   }
 }
 
-Policy of(search::Policy policy) { return policy == search::Policy::obstacle ? Policy::obstacle : Policy::ignored; }
+Policy of(views::Policy policy) { return policy == views::Policy::obstacle ? Policy::obstacle : Policy::ignored; }
 
 /// The same question for the oracle.
 Problem oracle_problem(const SearchProblem& asked) {
@@ -103,10 +103,10 @@ Problem oracle_problem(const SearchProblem& asked) {
     input.robot_pocket_m = asked.settings.policies.ignored_pocket_m;
     problem.cameras.push_back(input);
   }
-  if (const auto* frustum = std::get_if<search::FrustumSpace>(&asked.settings.space)) {
+  if (const auto* frustum = std::get_if<views::FrustumSpace>(&asked.settings.space)) {
     problem.space = FrustumSpace{frustum->principal, frustum->d_min_m, frustum->d_max_m};
   } else {
-    const auto& box = std::get<search::BoxSpace>(asked.settings.space);
+    const auto& box = std::get<views::BoxSpace>(asked.settings.space);
     problem.space = WorldBox{box.low_world, box.high_world};
   }
   problem.outside = of(asked.settings.policies.outside);
@@ -152,21 +152,21 @@ SearchProblem make_search_problem(const RandomOptions& options, int queries) {
   problem.rig = problem.scene.rig;
   problem.ideal = !margins && !lateral && !skew;
   problem.moved = moved;
-  search::Settings& settings = problem.settings;
+  views::Settings& settings = problem.settings;
   settings.rho_m = problem.scene.rho_m;
   settings.resolution_m = options.resolution_m.value_or(drawn_resolution_m);
   settings.v_max_m_s = skew ? v_max_m_s : 0.0;
-  settings.policies.outside = problem.scene.outside_is_obstacle ? search::Policy::obstacle : search::Policy::ignored;
-  settings.policies.unobserved = unobserved ? search::Policy::obstacle : search::Policy::ignored;
-  settings.policies.robot_pockets = pockets ? search::Policy::ignored : search::Policy::obstacle;
+  settings.policies.outside = problem.scene.outside_is_obstacle ? views::Policy::obstacle : views::Policy::ignored;
+  settings.policies.unobserved = unobserved ? views::Policy::obstacle : views::Policy::ignored;
+  settings.policies.robot_pockets = pockets ? views::Policy::ignored : views::Policy::obstacle;
   const double pocket_m = random.uniform(0, 0.06);
   settings.policies.ignored_pocket_m = pockets ? pocket_m : 0.0;
-  const search::BoxSpace drawn_box = draw_box(random);
+  const views::BoxSpace drawn_box = draw_box(random);
   if (box) {
     settings.space = drawn_box;
   } else {
-    settings.space = search::FrustumSpace{problem.scene.principal, problem.scene.d_min_m,
-                                          problem.scene.d_min_m + problem.scene.step_m * problem.scene.cell_count};
+    settings.space = views::FrustumSpace{problem.scene.principal, problem.scene.d_min_m,
+                                         problem.scene.d_min_m + problem.scene.step_m * problem.scene.cell_count};
   }
   const int absent = random.integer(0, static_cast<int>(problem.rig.cameras.size()) - 1);
   for (std::size_t k = 0; k < problem.rig.cameras.size(); ++k) {

@@ -17,7 +17,7 @@ struct SearchProblem {
   RandomOptions options;
   RandomProblem scene;        ///< images, and where the cameras really stand
   Rig rig;                    ///< what the search is told at first
-  search::Settings settings;  ///< what the search is told
+  views::Settings settings;   ///< what the search is told
   std::vector<Frame> frames;  ///< with times; without data where a camera has not sent any
   bool moved = false;         ///< every frame comes with the pose of scene.rig, else the rig's holds
   bool ideal = false;         ///< no margins, no errors, one exposure

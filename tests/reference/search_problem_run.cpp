@@ -3,7 +3,7 @@
 namespace depthgrid::reference {
 namespace {
 
-search::Snapshot deliver(const SearchProblem& problem, search::ViewStore& store) {
+views::Snapshot deliver(const SearchProblem& problem, views::ViewStore& store) {
   for (std::size_t k = 0; k < problem.frames.size(); ++k) {
     if (!problem.present(k)) {
       continue;

@@ -19,8 +19,8 @@ class SearchRun {
 
  private:
   const SearchProblem* problem_;
-  search::ViewStore store_;
-  search::Snapshot snapshot_;
+  views::ViewStore store_;
+  views::Snapshot snapshot_;
   search::Search search_;
 };
 

@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-search::Settings settings() {
-  search::Settings result;
-  result.space = search::BoxSpace{{-0.8, -0.8, 0}, {0.8, 0.8, 1.4}};
-  result.policies = {search::Policy::ignored, search::Policy::ignored, search::Policy::ignored, 3.0};
+views::Settings settings() {
+  views::Settings result;
+  result.space = views::BoxSpace{{-0.8, -0.8, 0}, {0.8, 0.8, 1.4}};
+  result.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::ignored, 3.0};
   result.margins.resize(1);
   result.v_max_m_s = 0;
   result.rho_m = 0.25;
@@ -77,8 +77,8 @@ TEST(RemovalSearch, LinksAreNoObstacleAndAHandIs) {
     links_asked += static_cast<long>(primitives.size());
     const auto nearest_m = [&](const RobotView& robot) {
       frame.robot = robot;
-      search::ViewStore store(rig, settings());
-      EXPECT_EQ(store.update(0, frame), search::UpdateResult::taken);
+      views::ViewStore store(rig, settings());
+      EXPECT_EQ(store.update(0, frame), views::UpdateResult::taken);
       std::vector<search::Answer> answers(primitives.size());
       search::Search().distances(store.snapshot(), primitives, answers);
       double least = 1;

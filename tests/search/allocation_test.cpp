@@ -25,9 +25,9 @@ TEST(NoAllocation, FromImageToAnswer) {
     const RandomProblem problem = reference::make_random_problem(options);
     SearchSetup setup = make_setup(problem, seed < 3 ? SpaceKind::box : SpaceKind::frustum, true);
     if (seed == 4) {
-      setup.settings.policies = {Policy::ignored, Policy::ignored, Policy::ignored, 0.05};
+      setup.settings.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::ignored, 0.05};
     }
-    ViewStore store(setup.rig, setup.settings);
+    views::ViewStore store(setup.rig, setup.settings);
     Search search;
     std::vector<Primitive> primitives;
     for (const Eigen::Vector3d& p_world : problem.points_world) {
@@ -42,7 +42,7 @@ TEST(NoAllocation, FromImageToAnswer) {
     Count count;
     const AllocationGuard guard;
     {
-      const Snapshot empty = store.snapshot();
+      const views::Snapshot empty = store.snapshot();
       search.distances(empty, primitives, answers);
     }
     for (std::size_t k = 0; k < setup.frames.size(); ++k) {
@@ -51,8 +51,8 @@ TEST(NoAllocation, FromImageToAnswer) {
       (void)store.update(k, setup.frames[k], problem.rig.cameras[k].T_world_camera);
       (void)store.update(99, setup.frames[k]);
     }
-    Snapshot snapshot = store.snapshot();
-    Snapshot other = store.snapshot();
+    views::Snapshot snapshot = store.snapshot();
+    views::Snapshot other = store.snapshot();
     search.distances(snapshot, primitives, answers);
     search.distances(other, primitives, answers, {10, 0}, &count);
     search.distances(other, primitives, answers, {0, 1e-6}, &count);

@@ -69,15 +69,15 @@ class Scene {
     Rig rig;
     rig.name = "one camera";
     rig.cameras = {camera_};
-    Settings settings;
-    settings.space = BoxSpace{{-5, -5, -5}, {5, 5, 5}};
-    settings.policies = {Policy::obstacle, Policy::obstacle, Policy::obstacle, 0};
+    views::Settings settings;
+    settings.space = views::BoxSpace{{-5, -5, -5}, {5, 5, 5}};
+    settings.policies = {views::Policy::obstacle, views::Policy::obstacle, views::Policy::obstacle, 0};
     settings.margins = {CameraMargins{SensorMargin{0, 0, 0, 0}}};
     settings.v_max_m_s = 0;
     store_.emplace(rig, settings);
     EXPECT_EQ(
         store_->update(0, {depth_view(depth_m_, width_px, height_px), {near_m_.data(), far_m_.data(), width_px}, 1.0}),
-        UpdateResult::taken);
+        views::UpdateResult::taken);
     snapshot_.emplace(store_->snapshot());
     make_local(*snapshot_, 0, Vector3d::Zero(), 6, local_);
   }
@@ -87,7 +87,7 @@ class Scene {
 
   /// The depths of a pixel that are not free, each part closed.
   [[nodiscard]] std::vector<std::array<double, 2>> not_free(int u, int v) const {
-    const View& view = snapshot_->view(0);
+    const views::View& view = snapshot_->view(0);
     const double blind_m = camera_.rule.near_m;
     const double free_m = static_cast<double>(view.free_m().at(u, v));
     std::vector<std::array<double, 2>> parts{{std::max(free_m, blind_m), kInfinity}};
@@ -145,8 +145,8 @@ class Scene {
  private:
   RigCamera camera_;
   std::vector<float> depth_m_, near_m_, far_m_;
-  std::optional<ViewStore> store_;
-  std::optional<Snapshot> snapshot_;
+  std::optional<views::ViewStore> store_;
+  std::optional<views::Snapshot> snapshot_;
   LocalCamera local_;
 };
 

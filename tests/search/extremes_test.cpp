@@ -35,8 +35,8 @@ struct OneCamera {
     setup.rig.cameras = {camera};
     setup.frames.resize(1);
     refer();
-    setup.settings.space = BoxSpace{{-3, -3, -3}, {3, 3, 3}};
-    setup.settings.policies = {Policy::obstacle, Policy::obstacle, Policy::obstacle, 0};
+    setup.settings.space = views::BoxSpace{{-3, -3, -3}, {3, 3, 3}};
+    setup.settings.policies = {views::Policy::obstacle, views::Policy::obstacle, views::Policy::obstacle, 0};
     setup.settings.margins = {CameraMargins{SensorMargin{0, 0, 0, 0}}};
     setup.settings.v_max_m_s = 0;
   }
@@ -67,7 +67,7 @@ TEST(Outside, IsAtDistanceZeroWhereItIsAnObstacle) {
 
 TEST(Outside, HasNoDistanceWhereItIsIgnored) {
   OneCamera one;
-  one.setup.settings.policies.outside = Policy::ignored;
+  one.setup.settings.policies.outside = views::Policy::ignored;
   for (const Vector3d& p : {Vector3d(3.001, 0, 1), Vector3d(0, 0, 3.5), Vector3d(1e6, 0, 0), Vector3d(0, -1e4, 1e4)}) {
     const Answer answer = Asker(one.setup).distance(point(p));
     EXPECT_TRUE(std::isnan(answer.nearest.distance_m)) << p.transpose();
@@ -77,7 +77,7 @@ TEST(Outside, HasNoDistanceWhereItIsIgnored) {
 
 TEST(Outside, BeginsAtKnownToWhereItIsIgnored) {
   OneCamera one(5.0F);
-  one.setup.settings.policies.outside = Policy::ignored;
+  one.setup.settings.policies.outside = views::Policy::ignored;
   one.setup.settings.rho_m = 2.0;
   Asker asker(one.setup);
   for (const Vector3d& p : {Vector3d(0, 0, 2.75), Vector3d(0, 0, 1.0), Vector3d(0.1, 0.1, 2.999)}) {
@@ -85,7 +85,7 @@ TEST(Outside, BeginsAtKnownToWhereItIsIgnored) {
     EXPECT_NEAR(asker.distance(point(p)).nearest.known_to_m, border_m, 1e-5) << p.transpose();
     EXPECT_LE(asker.distance(point(p)).nearest.known_to_m, border_m) << p.transpose();
   }
-  one.setup.settings.policies.outside = Policy::obstacle;
+  one.setup.settings.policies.outside = views::Policy::obstacle;
   EXPECT_TRUE(std::isnan(Asker(one.setup).distance(point({0, 0, 1})).nearest.known_to_m)) << "nothing is ignored";
 }
 
@@ -96,8 +96,8 @@ TEST(Cameras, SeeNothingBehindThem) {
     EXPECT_EQ(answer.nearest.distance_m, 0) << p.transpose();
     EXPECT_EQ(answer.nearest.state, ProximityState::unobserved) << p.transpose();
   }
-  one.setup.settings.policies.unobserved = Policy::ignored;
-  one.setup.settings.policies.outside = Policy::ignored;
+  one.setup.settings.policies.unobserved = views::Policy::ignored;
+  one.setup.settings.policies.outside = views::Policy::ignored;
   for (const Vector3d& p : {Vector3d(0, 0, -1), Vector3d(-2, 0, -2.5)}) {
     const Answer answer = Asker(one.setup).distance(point(p));
     EXPECT_EQ(answer.nearest.state, ProximityState::beyond_rho) << p.transpose();
@@ -169,8 +169,8 @@ TEST(Cameras, CanBeSeenFreeByAnother) {
 
 TEST(Snapshots, WithoutAnyFrameFreeNothing) {
   OneCamera one;
-  const ViewStore store(one.setup.rig, one.setup.settings);
-  const Snapshot snapshot = store.snapshot();
+  const views::ViewStore store(one.setup.rig, one.setup.settings);
+  const views::Snapshot snapshot = store.snapshot();
   EXPECT_TRUE(snapshot.stale());
   EXPECT_TRUE(std::isnan(snapshot.reference_time_s()));
   Search search;
@@ -189,9 +189,9 @@ TEST(Snapshots, WithoutAnyFrameFreeNothing) {
 
 TEST(Snapshots, WithoutAnyFrameLeaveTheIgnoredOut) {
   OneCamera one;
-  one.setup.settings.policies.unobserved = Policy::ignored;
-  one.setup.settings.policies.outside = Policy::ignored;
-  const ViewStore store(one.setup.rig, one.setup.settings);
+  one.setup.settings.policies.unobserved = views::Policy::ignored;
+  one.setup.settings.policies.outside = views::Policy::ignored;
+  const views::ViewStore store(one.setup.rig, one.setup.settings);
   Search search;
   const auto ask = [&](const Vector3d& p) {
     const Primitive primitive = point(p);
@@ -256,13 +256,13 @@ TEST(Snapshots, FreeNothingThroughACameraWithoutATime) {
 /// place where it stands, which is not seen free. Only that counts here.
 TEST(Snapshots, KnowWhereACameraWithoutAFrameStands) {
   OneCamera one;
-  one.setup.settings.policies.unobserved = Policy::ignored;
-  one.setup.settings.policies.outside = Policy::ignored;
+  one.setup.settings.policies.unobserved = views::Policy::ignored;
+  one.setup.settings.policies.outside = views::Policy::ignored;
   one.setup.settings.rho_m = 0.2;
   const Pose at_rig = look_at(Vector3d(1, 0, 0), Vector3d(1, 1, 0));
   const Pose moved = look_at(Vector3d(-1, 0, 0), Vector3d(-1, 1, 0));
   one.setup.rig.cameras[0].T_world_camera = at_rig;
-  ViewStore store(one.setup.rig, one.setup.settings);
+  views::ViewStore store(one.setup.rig, one.setup.settings);
   Search search;
   const auto distance_m = [&](const Vector3d& p_world) {
     const Primitive primitive = point(p_world);
@@ -276,13 +276,13 @@ TEST(Snapshots, KnowWhereACameraWithoutAFrameStands) {
   EXPECT_EQ(distance_m(before_moved), 0.2) << "no frame yet";
   Frame unusable;
   for (int i = 0; i < 5; ++i) {  // every buffer once
-    EXPECT_EQ(store.update(0, one.setup.frames[0], moved), UpdateResult::taken);
+    EXPECT_EQ(store.update(0, one.setup.frames[0], moved), views::UpdateResult::taken);
     EXPECT_EQ(distance_m(before_rig), 0.2) << "moved away";
-    EXPECT_EQ(store.update(0, unusable), UpdateResult::unusable);
+    EXPECT_EQ(store.update(0, unusable), views::UpdateResult::unusable);
     EXPECT_EQ(distance_m(before_rig), 0) << "an unusable frame from where the rig says, " << i;
     EXPECT_EQ(distance_m(before_moved), 0.2) << "an unusable frame from where the rig says, " << i;
-    EXPECT_EQ(store.update(0, one.setup.frames[0]), UpdateResult::taken);
-    EXPECT_EQ(store.update(0, unusable, moved), UpdateResult::unusable);
+    EXPECT_EQ(store.update(0, one.setup.frames[0]), views::UpdateResult::taken);
+    EXPECT_EQ(store.update(0, unusable, moved), views::UpdateResult::unusable);
     EXPECT_EQ(distance_m(before_moved), 0) << "an unusable frame from elsewhere, " << i;
     EXPECT_EQ(distance_m(before_rig), 0.2) << "an unusable frame from elsewhere, " << i;
   }
@@ -313,8 +313,8 @@ TEST(Extremes, FarFromTheOriginNothingChanges) {
 TEST(Extremes, RhoMayReachBeyondEverything) {
   for (const double rho_m : {4.0, 30.0}) {
     OneCamera one(2.9F);
-    one.setup.settings.policies.unobserved = Policy::ignored;
-    one.setup.settings.policies.outside = Policy::ignored;
+    one.setup.settings.policies.unobserved = views::Policy::ignored;
+    one.setup.settings.policies.outside = views::Policy::ignored;
     one.setup.settings.rho_m = rho_m;
     Asker asker(one.setup);
     // The slab between the wall and W's border, and the blind zone before 0.3 m is no part of what the camera covers.
@@ -381,13 +381,13 @@ TEST(Extremes, AnImageMayHaveAnySize) {
     // Something near in the middle of the image only.
     one.image_m[static_cast<std::size_t>(pinhole.height_px / 2 * width_px + width_px / 2)] = 0.9F;
     one.setup.settings.rho_m = 2.0;
-    one.setup.settings.policies.unobserved = Policy::ignored;
-    one.setup.settings.policies.outside = Policy::ignored;
+    one.setup.settings.policies.unobserved = views::Policy::ignored;
+    one.setup.settings.policies.outside = views::Policy::ignored;
     for (const bool frustum : {false, true}) {
       if (frustum) {
-        one.setup.settings.space = FrustumSpace{0, 0.3, 2.5};
+        one.setup.settings.space = views::FrustumSpace{0, 0.3, 2.5};
       } else {
-        one.setup.settings.space = BoxSpace{{-3, -3, -3}, {3, 3, 3}};
+        one.setup.settings.space = views::BoxSpace{{-3, -3, -3}, {3, 3, 3}};
       }
       for (const Vector3d& p : {Vector3d(0.01, 0.01, 0.5), Vector3d(0, 0, 0.8), Vector3d(0.1, 0.05, 1.1)}) {
         expect_within_oracle(one.setup, p);
@@ -401,8 +401,8 @@ OneCamera measured_only(float wall_m, int width_px, int height_px, double focal_
   OneCamera one(wall_m, width_px, height_px);
   one.setup.rig.cameras[0].intrinsics.fx_px = focal_px;
   one.setup.rig.cameras[0].intrinsics.fy_px = focal_px;
-  one.setup.settings.policies.unobserved = Policy::ignored;
-  one.setup.settings.policies.outside = Policy::ignored;
+  one.setup.settings.policies.unobserved = views::Policy::ignored;
+  one.setup.settings.policies.outside = views::Policy::ignored;
   one.setup.settings.rho_m = 1.0;
   one.refer();
   return one;

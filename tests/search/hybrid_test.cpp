@@ -28,8 +28,8 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// The weighted mean of the unit vectors from p to the obstacle space within rho, by random points.
-Vector3d mean_direction(const Reference& oracle, const Settings& settings, const Vector3d& p_world, Random& random,
-                        int samples) {
+Vector3d mean_direction(const Reference& oracle, const views::Settings& settings, const Vector3d& p_world,
+                        Random& random, int samples) {
   Vector3d sum = Vector3d::Zero();
   double total = 0;
   for (int i = 0; i < samples; ++i) {
@@ -100,7 +100,7 @@ TEST(HybridDirection, IsNearlyThatOfTheExactObstacleSpace) {
   std::vector<double> off_degrees;
   for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
     SearchSetup setup = make_setup(problem, SpaceKind::box, true);
-    setup.settings.policies.outside = Policy::ignored;
+    setup.settings.policies.outside = views::Policy::ignored;
     setup.settings.direction_blend = 1.0;
     Asker asker(setup);
     const Reference oracle(oracle_problem(setup));
@@ -148,8 +148,8 @@ struct Staged {
           depth_view(std::span(image.data(), image.index(0, image.height_px())), image.width_px(), image.height_px());
       setup.frames.push_back(frame);
     }
-    setup.settings.space = BoxSpace{Vector3d::Constant(-1), Vector3d::Constant(1)};
-    setup.settings.policies = {Policy::obstacle, Policy::obstacle, Policy::obstacle, 0};
+    setup.settings.space = views::BoxSpace{Vector3d::Constant(-1), Vector3d::Constant(1)};
+    setup.settings.policies = {views::Policy::obstacle, views::Policy::obstacle, views::Policy::obstacle, 0};
     setup.settings.v_max_m_s = 0;
     setup.settings.rho_m = 0.4;
   }
@@ -229,7 +229,7 @@ TEST(HybridDirection, IsComparableWithTheGrids) {
   options.outside = false;
   for_random_problems(100, options, [&](const RandomProblem& problem, Random&) {
     SearchSetup setup = make_setup(problem, SpaceKind::frustum);
-    setup.settings.policies.outside = Policy::ignored;
+    setup.settings.policies.outside = views::Policy::ignored;
     setup.settings.resolution_m = 0.005;
     grid::EvaluationSettings settings;
     settings.collect = grid::Collect::hybrid;

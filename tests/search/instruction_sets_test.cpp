@@ -56,10 +56,10 @@ std::vector<std::uint64_t> bits_of(const Answer& answer) {
 SearchSetup random_setup(const RandomProblem& problem, Random& random) {
   SearchSetup setup = make_setup(problem, random.chance(0.5) ? SpaceKind::box : SpaceKind::frustum, true);
   if (random.chance(0.5)) {
-    setup.settings.policies.unobserved = Policy::ignored;
+    setup.settings.policies.unobserved = views::Policy::ignored;
   }
   if (random.chance(0.5)) {
-    setup.settings.policies.outside = Policy::ignored;
+    setup.settings.policies.outside = views::Policy::ignored;
   }
   for (RigCamera& camera : setup.rig.cameras) {
     camera.rule.near_m = random.chance(0.3) ? random.uniform(0.2, 1.0) : camera.rule.near_m;

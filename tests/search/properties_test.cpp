@@ -59,7 +59,7 @@ SearchSetup with_cameras(const SearchSetup& setup, const std::vector<std::size_t
     result.frames.push_back(setup.frames[k]);
     result.settings.margins.push_back(setup.settings.margins[k]);
   }
-  if (auto* frustum = std::get_if<FrustumSpace>(&result.settings.space)) {
+  if (auto* frustum = std::get_if<views::FrustumSpace>(&result.settings.space)) {
     frustum->principal =
         static_cast<std::size_t>(std::find(order.begin(), order.end(), frustum->principal) - order.begin());
   }
@@ -104,7 +104,7 @@ TEST(Properties, OneMoreCameraNeverBringsObstaclesNearer) {
   for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup all = make_setup(problem, random_space(random));
     const std::size_t count = all.rig.cameras.size();
-    const auto* frustum = std::get_if<FrustumSpace>(&all.settings.space);
+    const auto* frustum = std::get_if<views::FrustumSpace>(&all.settings.space);
     std::vector<std::size_t> fewer;
     const auto left_out = static_cast<std::size_t>(random.integer(0, static_cast<int>(count) - 1));
     for (std::size_t k = 0; k < count; ++k) {
@@ -243,10 +243,10 @@ TEST(Properties, ABoxMovedWithEverythingChangesNothing) {
     for (Vector3d& p_world : moved.points_world) {
       p_world = motion * p_world;
     }
-    const auto& box = std::get<BoxSpace>(still.setup.settings.space);
+    const auto& box = std::get<views::BoxSpace>(still.setup.settings.space);
     const Vector3d one = motion * box.low_world;
     const Vector3d other = motion * box.high_world;
-    moved.setup.settings.space = BoxSpace{one.cwiseMin(other), one.cwiseMax(other)};
+    moved.setup.settings.space = views::BoxSpace{one.cwiseMin(other), one.cwiseMax(other)};
     expect_not_farther(still, moved, tally);
     expect_not_farther(moved, still, tally);
   });
@@ -275,9 +275,9 @@ TEST(Properties, PosesOfFramesAreThoseOfTheRig) {
     for (RigCamera& camera : elsewhere.cameras) {
       camera.T_world_camera = look_at(random.in_cube(2), random.in_cube(1));
     }
-    ViewStore store(elsewhere, setup.settings);
+    views::ViewStore store(elsewhere, setup.settings);
     for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-      ASSERT_EQ(store.update(k, setup.frames[k], setup.rig.cameras[k].T_world_camera), UpdateResult::taken);
+      ASSERT_EQ(store.update(k, setup.frames[k], setup.rig.cameras[k].T_world_camera), views::UpdateResult::taken);
     }
     Asker asker(setup);
     Search search;
@@ -380,15 +380,15 @@ TEST(Properties, OnlyTheNewestFramesCount) {
       }
       return result;
     }();
-    const auto take = [](ViewStore& store, const SearchSetup& setup, int times) {
+    const auto take = [](views::ViewStore& store, const SearchSetup& setup, int times) {
       for (int n = 0; n < times; ++n) {
         for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-          ASSERT_EQ(store.update(k, setup.frames[k]), UpdateResult::taken);
+          ASSERT_EQ(store.update(k, setup.frames[k]), views::UpdateResult::taken);
         }
       }
     };
     for (const auto& [before, now] : {std::pair{&robot, &none}, std::pair{&none, &robot}}) {
-      ViewStore store(now->rig, now->settings);
+      views::ViewStore store(now->rig, now->settings);
       take(store, *before, 5);  // every buffer once
       take(store, *now, 1);
       Asker fresh(*now);

@@ -31,21 +31,21 @@ CameraMargins random_margins(reference::Random& random, const reference::RandomP
 SearchSetup make_setup(const reference::RandomProblem& problem, SpaceKind space, bool skewed) {
   reference::Random random(problem.options.seed * 7 + 3);
   SearchSetup setup{problem.rig, problem.frames, {}};
-  Settings& settings = setup.settings;
+  views::Settings& settings = setup.settings;
   if (space == SpaceKind::frustum) {
     settings.space =
-        FrustumSpace{problem.principal, problem.d_min_m, problem.d_min_m + problem.step_m * problem.cell_count};
+        views::FrustumSpace{problem.principal, problem.d_min_m, problem.d_min_m + problem.step_m * problem.cell_count};
   } else {
-    BoxSpace box{};
+    views::BoxSpace box{};
     for (int axis = 0; axis < 3; ++axis) {
       box.low_world[axis] = -random.uniform(0.7, 1.5);
       box.high_world[axis] = random.uniform(0.7, 1.5);
     }
     settings.space = box;
   }
-  settings.policies.unobserved = Policy::obstacle;
-  settings.policies.outside = Policy::obstacle;
-  settings.policies.robot_pockets = Policy::obstacle;
+  settings.policies.unobserved = views::Policy::obstacle;
+  settings.policies.outside = views::Policy::obstacle;
+  settings.policies.robot_pockets = views::Policy::obstacle;
   settings.rho_m = problem.rho_m;
   settings.resolution_m = random.chance(0.5) ? 0.005 : random.uniform(0.002, 0.015);
   settings.v_max_m_s = problem.pose.time_m > 0 ? random.uniform(0.5, 2) : 0.0;
@@ -67,14 +67,14 @@ reference::Problem oracle_problem(const SearchSetup& setup, double grown_m, doub
     const PoseMargin pose{margins.translation_m + grown_m, margins.rotation_rad, setup.settings.v_max_m_s * time_s};
     problem.cameras.push_back({camera.intrinsics, camera.T_world_camera, camera.rule, frame, margins.sensor, pose});
   }
-  if (const auto* frustum = std::get_if<FrustumSpace>(&setup.settings.space)) {
+  if (const auto* frustum = std::get_if<views::FrustumSpace>(&setup.settings.space)) {
     problem.space = reference::FrustumSpace{frustum->principal, frustum->d_min_m, frustum->d_max_m};
   } else {
-    const auto& box = std::get<BoxSpace>(setup.settings.space);
+    const auto& box = std::get<views::BoxSpace>(setup.settings.space);
     problem.space = reference::WorldBox{box.low_world, box.high_world};
   }
-  const auto counted = [](Policy policy) {
-    return policy == Policy::obstacle ? reference::Policy::obstacle : reference::Policy::ignored;
+  const auto counted = [](views::Policy policy) {
+    return policy == views::Policy::obstacle ? reference::Policy::obstacle : reference::Policy::ignored;
   };
   problem.outside = counted(setup.settings.policies.outside);
   problem.uncovered = counted(setup.settings.policies.unobserved);
@@ -83,9 +83,9 @@ reference::Problem oracle_problem(const SearchSetup& setup, double grown_m, doub
 }
 
 Asker::Asker(const SearchSetup& setup)
-    : store_(std::make_unique<ViewStore>(setup.rig, setup.settings)), snapshot_([&] {
+    : store_(std::make_unique<views::ViewStore>(setup.rig, setup.settings)), snapshot_([&] {
         for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-          EXPECT_EQ(store_->update(k, setup.frames[k]), UpdateResult::taken) << "camera " << k;
+          EXPECT_EQ(store_->update(k, setup.frames[k]), views::UpdateResult::taken) << "camera " << k;
         }
         return store_->snapshot();
       }()) {}

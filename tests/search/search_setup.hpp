@@ -24,7 +24,7 @@ inline constexpr double kDoubleRounding = 1e-9;
 struct SearchSetup {
   Rig rig;
   std::vector<Frame> frames;
-  Settings settings;
+  views::Settings settings;
 };
 
 /// Where W comes from.
@@ -53,12 +53,12 @@ class Asker {
   }
 
   [[nodiscard]] Search& search() { return search_; }
-  [[nodiscard]] const Snapshot& snapshot() const { return snapshot_; }
+  [[nodiscard]] const views::Snapshot& snapshot() const { return snapshot_; }
 
  private:
-  std::unique_ptr<ViewStore> store_;
+  std::unique_ptr<views::ViewStore> store_;
   Search search_;
-  Snapshot snapshot_;
+  views::Snapshot snapshot_;
 };
 
 /// Random problems one after the other until a check fails: check(problem, random), `random` for the test's own

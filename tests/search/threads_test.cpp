@@ -88,10 +88,10 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
     const std::vector<Primitive> primitives = some_primitives();
     std::vector<Told> legal;
     for (unsigned set = 0; set < 1U << kCameras; ++set) {
-      ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
+      views::ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
       for (std::size_t k = 0; k < kCameras; ++k) {
         const std::size_t i = (set >> k) & 1U;
-        ASSERT_EQ(store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]), UpdateResult::taken);
+        ASSERT_EQ(store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]), views::UpdateResult::taken);
       }
       Search search;
       std::vector<Answer> answers(primitives.size());
@@ -105,7 +105,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
     ASSERT_GE(different.size(), 4U) << "the sets of frames can hardly be told apart";
 
     constexpr int kReaders = 3;
-    ViewStore store(deliveries.setup.rig, deliveries.setup.settings, kReaders);
+    views::ViewStore store(deliveries.setup.rig, deliveries.setup.settings, kReaders);
     for (std::size_t k = 0; k < kCameras; ++k) {
       (void)store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);
     }
@@ -118,8 +118,8 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
         while (!stop.load()) {
           const std::size_t i = random.chance(0.5) ? 1 : 0;
           const auto result = store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]);
-          dropped += result == UpdateResult::dropped ? 1 : 0;
-          EXPECT_NE(result, UpdateResult::unusable);
+          dropped += result == views::UpdateResult::dropped ? 1 : 0;
+          EXPECT_NE(result, views::UpdateResult::unusable);
         }
       });
     }
@@ -134,7 +134,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
         // On a busy machine the writers may not have had a turn by then.
         const auto waiting = [&] { return std::count(seen[r].begin(), seen[r].end(), 0) + 1 >= std::ssize(legal); };
         for (int n = 0; n < 300 || (n < 30000 && waiting()); ++n) {
-          const Snapshot snapshot = store.snapshot();
+          const views::Snapshot snapshot = store.snapshot();
           search.distances(snapshot, primitives, answers);
           const auto found = std::find(legal.begin(), legal.end(), told(answers));
           if (found == legal.end()) {
@@ -167,11 +167,11 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
 TEST(Threads, MayShareOneSnapshot) {
   const Deliveries deliveries(4);
   const std::vector<Primitive> primitives = some_primitives();
-  ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
+  views::ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
   for (std::size_t k = 0; k < kCameras; ++k) {
     (void)store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);
   }
-  const Snapshot snapshot = store.snapshot();
+  const views::Snapshot snapshot = store.snapshot();
   std::array<Told, 4> answered;
   std::vector<std::thread> readers;
   for (Told& mine : answered) {

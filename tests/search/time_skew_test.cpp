@@ -49,8 +49,8 @@ SearchSetup two_cameras() {
   SearchSetup setup;
   setup.rig.name = "two cameras at a right angle";
   setup.rig.cameras = {camera_at("along x", {-2.2, 0, 0}), camera_at("along y", {0, -2.2, 0.1})};
-  setup.settings.space = BoxSpace{{-0.6, -0.6, -0.6}, {0.6, 0.6, 0.6}};
-  setup.settings.policies = {Policy::ignored, Policy::ignored, Policy::obstacle, 0};
+  setup.settings.space = views::BoxSpace{{-0.6, -0.6, -0.6}, {0.6, 0.6, 0.6}};
+  setup.settings.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::obstacle, 0};
   // Rays through the pixels' centres may miss the ball's nearest point: the neighbourhood of a pixel holds a centre
   // that is nearer to the middle of the ball's image, or lies within sqrt(1/2) pixel of it. There the surface is up to
   // (0.71 px)^2 / (2 R) behind that point; twice that covers that rays are not parallel.
@@ -107,7 +107,7 @@ Lost count_lost(SearchSetup setup, const Crossing& crossing, const std::vector<d
   Lost result;
   reference::Random random(5);
   Search search;
-  ViewStore store(setup.rig, setup.settings);
+  views::ViewStore store(setup.rig, setup.settings);
   for (int i = -2; i <= 2; ++i) {
     const double t_ref_s = i * 0.0373;
     const std::vector<double> stamped_s{t_ref_s - delays_s[0], t_ref_s - delays_s[1]};
@@ -117,9 +117,9 @@ Lost count_lost(SearchSetup setup, const Crossing& crossing, const std::vector<d
     }
     const Exposures exposures(setup.rig, crossing, stamped_s, taken_s);
     for (std::size_t k = 0; k < exposures.frames.size(); ++k) {
-      EXPECT_EQ(store.update(k, exposures.frames[k]), UpdateResult::taken);
+      EXPECT_EQ(store.update(k, exposures.frames[k]), views::UpdateResult::taken);
     }
-    const Snapshot snapshot = store.snapshot();
+    const views::Snapshot snapshot = store.snapshot();
     EXPECT_EQ(snapshot.reference_time_s(), t_ref_s);
     const std::vector<Primitive> points = points_around(crossing.ball_world(t_ref_s), random);
     std::vector<Answer> answers(points.size());

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -137,4 +137,4 @@ RandomFrame::RandomFrame(const RandomCamera& camera, std::mt19937_64& random) {
   frame_.time_s = draw.uniform(0, 100);
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -12,7 +12,7 @@
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/views/settings.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// A camera of this size with what the preparation needs to know.
 struct RandomCamera {
@@ -37,4 +37,4 @@ class RandomFrame {
 
 RandomCamera random_camera(int width_px, int height_px, std::mt19937_64& random);
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -9,7 +9,7 @@
 #include "depthgrid/views/view_store.hpp"
 #include "support/thrown_message.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -175,4 +175,4 @@ TEST(ViewStoreErrors, RefusesWhatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -10,7 +10,7 @@
 
 #include "support/allocation_guard.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -281,4 +281,4 @@ TEST(ViewStore, AllocatesNothingAfterConstruction) {
 }
 
 }  // namespace
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -11,7 +11,7 @@
 #include "support/allocation_guard.hpp"
 #include "support/random_run.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr int kWidth = 37;
@@ -166,4 +166,4 @@ TEST(ViewStoreThreads, SnapshotsAreWholeWhileImagesArrive) {
 }
 
 }  // namespace
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -12,7 +12,7 @@
 #include "views/random_frame.hpp"
 #include "views/view_twin.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 /// Calls `body` once for every instruction set that was compiled and that this machine has.
@@ -234,4 +234,4 @@ TEST(View, UpdatesWithoutAllocation) {
 }
 
 }  // namespace
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

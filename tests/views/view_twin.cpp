@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -200,4 +200,4 @@ testing::AssertionResult follows_definition(const View& view, const RigCamera& c
   return testing::AssertionSuccess();
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

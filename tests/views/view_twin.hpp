@@ -6,7 +6,7 @@
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/views/view.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Whether `view` is what its camera's newest frame `frame` (its buffers are still alive) has to be made into:
 /// - measured depths equal those of measured_depth_m(), bit for bit;
@@ -17,4 +17,4 @@ namespace depthgrid::search {
 testing::AssertionResult follows_definition(const View& view, const RigCamera& camera, const CameraMargins& margins,
                                             const Policies& policies, const Frame& frame);
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -49,13 +49,13 @@ control::JointLimits joint_limits(const robot::RobotModel& model) {
   return limits;
 }
 
-search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings, double ignored_pocket_m) {
+views::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings, double ignored_pocket_m) {
   const simulation::Arrangement letter = simulation::letter_arrangement();
-  search::Settings result;
-  result.space = search::BoxSpace{letter.workspace_low_world, letter.workspace_high_world};
-  result.policies.unobserved = search::Policy::obstacle;
-  result.policies.outside = search::Policy::obstacle;
-  result.policies.robot_pockets = ignored_pocket_m > 0 ? search::Policy::ignored : search::Policy::obstacle;
+  views::Settings result;
+  result.space = views::BoxSpace{letter.workspace_low_world, letter.workspace_high_world};
+  result.policies.unobserved = views::Policy::obstacle;
+  result.policies.outside = views::Policy::obstacle;
+  result.policies.robot_pockets = ignored_pocket_m > 0 ? views::Policy::ignored : views::Policy::obstacle;
   result.policies.ignored_pocket_m = ignored_pocket_m;
   result.margins = camera_margins(rig);
   result.v_max_m_s = settings.v_max_m_s;

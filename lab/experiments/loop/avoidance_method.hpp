@@ -60,8 +60,8 @@ struct AvoidanceSettings {
 /// Of the model's ranges and speeds; 300 degrees / s^2.
 [[nodiscard]] control::JointLimits joint_limits(const robot::RobotModel& model);
 
-[[nodiscard]] search::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings,
-                                               double ignored_pocket_m = 0);
+[[nodiscard]] views::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings,
+                                              double ignored_pocket_m = 0);
 
 [[nodiscard]] robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings);
 

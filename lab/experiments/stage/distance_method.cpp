@@ -62,11 +62,11 @@ grid::DepthQuantisation cells(const simulation::Arrangement& arrangement) {
   return {arrangement.d_min_m, arrangement.cell_m, 0.0, arrangement.cells};
 }
 
-search::Settings search_settings(const Rig& rig, const simulation::Arrangement& arrangement) {
+views::Settings search_settings(const Rig& rig, const simulation::Arrangement& arrangement) {
   const grid::DepthGrid space(rig.cameras.front().intrinsics, cells(arrangement));
-  search::Settings settings;
-  settings.space = search::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
-  settings.policies = {search::Policy::obstacle, search::Policy::ignored, search::Policy::obstacle, 0.0};
+  views::Settings settings;
+  settings.space = views::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
+  settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0.0};
   settings.margins = camera_margins(rig);
   settings.rho_m = DistanceMethod::kRho;
   settings.v_max_m_s = 0;  // the images are of one instant
@@ -103,7 +103,7 @@ class DistanceMethod::SearchMethod final : public Evaluator {
   bool update(std::span<const Frame> frames) override {
     bool complete = true;
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      complete = store_.update(k, frames[k]) == search::UpdateResult::taken && complete;
+      complete = store_.update(k, frames[k]) == views::UpdateResult::taken && complete;
     }
     return complete;
   }
@@ -121,7 +121,7 @@ class DistanceMethod::SearchMethod final : public Evaluator {
   }
 
  private:
-  search::ViewStore store_;
+  views::ViewStore store_;
   search::Search search_;
   std::vector<search::Primitive> primitives_;
   std::vector<search::Answer> found_;

@@ -67,7 +67,7 @@ TEST_P(Margins, CoverTheShareOfReadingsOnAWallThatTheyClaim) {
 
 TEST_P(Margins, CoverNearlyAllFreeSpaceInTheCell) {
   const Rig rig = simulation::letter_arrangement(GetParam()).rig;
-  bench::WorkcellScene scene(simulation::Motion::reach, 1, bench::ArmShape::capsules);
+  lab::WorkcellScene scene(simulation::Motion::reach, 1, lab::ArmShape::capsules);
   DepthCaster caster(scene.at(0));
   simulation::SimulatedSensors sensors(rig, {});
   Share share;

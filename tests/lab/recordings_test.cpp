@@ -10,7 +10,7 @@
 #include "lab/recordings/ball_tables.hpp"
 #include "lab/recordings/left_out_study.hpp"
 
-namespace depthgrid::bench {
+namespace depthgrid::lab {
 namespace {
 
 /// The rig's calibration is good to 2-5 cm and the ball's place is known to about 2 cm.
@@ -41,7 +41,7 @@ class RedKitchen : public OnRecording {
 double rate(const LeftOutFigures& f) { return static_cast<double>(f.violations) / static_cast<double>(f.readings); }
 
 TEST_F(Kinect3Ball, DistancesAgreeWithTheBall) {
-  input::Recording recording(folder);
+  files::Recording recording(folder);
   auto settings = ball_settings();
   settings.resize(2);  // letter, and corrected without margins
   const auto study = study_ball(recording, load_ball_track(folder / "ball.json"), {4, 40, 76}, settings, {});
@@ -64,7 +64,7 @@ TEST_F(Kinect3Ball, DistancesAgreeWithTheBall) {
 }
 
 TEST_F(Kinect3Ball, NoSearchWithTheSensorsMarginsLooksBeyondTheBall) {
-  input::Recording recording(folder);
+  files::Recording recording(folder);
   const auto rows = study_ball_search(recording, load_ball_track(folder / "ball.json"), {4, 40, 76});
   std::size_t tested = 0;
   for (const BallSearchFigures& row : rows) {
@@ -82,7 +82,7 @@ TEST_F(Kinect3Ball, NoSearchWithTheSensorsMarginsLooksBeyondTheBall) {
 }
 
 TEST_F(Kinect3Ball, WhatACameraMeasuresIsNotFreeToTheOthersBeyondTheMargins) {
-  input::Recording recording(folder);
+  files::Recording recording(folder);
   for (const LeftOutRow& row : ball_leave_one_out(recording, {0, 32, 64}, 20)) {
     SCOPED_TRACE(row.setting + ", without " + row.left_out);
     const LeftOutFigures& f = row.figures;
@@ -115,4 +115,4 @@ TEST_F(RedKitchen, WhatAMovingCameraMeasuresIsNotFreeToItsOwnPastBeyondTheMargin
 }
 
 }  // namespace
-}  // namespace depthgrid::bench
+}  // namespace depthgrid::lab
