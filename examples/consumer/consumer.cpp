@@ -11,6 +11,7 @@
 #include "depthgrid/search/search.hpp"
 
 namespace search = depthgrid::search;
+namespace views = depthgrid::views;
 
 int main() try {
   const depthgrid::files::RigFile file = depthgrid::files::parse_rig(R"({
