@@ -168,8 +168,8 @@ control::JointLimits joint_limits(const robot::RobotModel& model) {
 
 // What distances are asked for: the capsules of all links that two joints or more move. The first part is the end
 // effector: the origin of its link is what follows the task and is repelled. A tip link without a shape gets a point.
-std::vector<avoidance::RobotPart> parts_of(const robot::RobotModel& model, std::size_t tip_link) {
-  std::vector<avoidance::RobotPart> parts = avoidance::moving_capsules(model);
+std::vector<robot::LinkCapsule> parts_of(const robot::RobotModel& model, std::size_t tip_link) {
+  std::vector<robot::LinkCapsule> parts = avoidance::moving_capsules(model);
   const auto tip = std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.link == tip_link; });
   if (tip == parts.end()) {
     parts.insert(parts.begin(), {.link = tip_link});

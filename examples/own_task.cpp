@@ -79,7 +79,7 @@ int run() {
   const robot::RobotModel model = robot::kuka_lwr4();
   const Pose T_world_base = Pose::Identity();  // the base is the world
   const std::size_t tip = model.link_index("lwr_7_link");
-  const std::vector<avoidance::RobotPart> parts = avoidance::moving_capsules(model);  // the first is of the tip's link
+  const std::vector<robot::LinkCapsule> parts = avoidance::moving_capsules(model);  // the first is of the tip's link
 
   control::ControllerSettings settings;
   settings.limits = limits_of_lwr();
@@ -96,7 +96,7 @@ int run() {
   // All that a period needs, allocated here.
   control::JointState state;
   std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
-  std::vector<depthgrid::search::Primitive> parts_world(parts.size());
+  std::vector<depthgrid::Capsule> parts_world(parts.size());
   std::vector<avoidance::PartAnswer> answers(parts.size());
   std::vector<control::BodyPoint> body(parts.size());
   robot::Jacobian jacobian(6, 7);
@@ -121,7 +121,7 @@ int run() {
       circle.T_world_start = T_world_link[tip];
     }
     // 2. How far its parts are from obstacles, and how each of the points in question moves with the joints.
-    avoidance::place(parts, T_world_link, parts_world);
+    robot::place(parts, T_world_link, parts_world);
     source.evaluate(parts_world, now_s, answers);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       (void)model.jacobian(q, T_world_link, parts[i].link, answers[i].at_world, jacobian);

@@ -84,9 +84,9 @@ int run() {
   }
 
   // 5. Whole links of the robot at once: points, spheres and capsules, world frame.
-  const std::array<search::Primitive, 3> links = {search::capsule({0.7, 0.0, 0.9}, {1.0, 0.0, 1.0}, 0.06),
-                                                  search::sphere({1.1, 0.0, 1.0}, 0.08),
-                                                  search::point({1.9, 0.0, 1.0})};
+  const std::array<depthgrid::Capsule, 3> links = {depthgrid::Capsule{{0.7, 0.0, 0.9}, {1.0, 0.0, 1.0}, 0.06},
+                                                   depthgrid::Capsule::sphere({1.1, 0.0, 1.0}, 0.08),
+                                                   Capsule::point({1.9, 0.0, 1.0})};
   std::array<search::Answer, 3> answers;
   search.distances(store.snapshot(), links, answers);
   for (const search::Answer& answer : answers) {

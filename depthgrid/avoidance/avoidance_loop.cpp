@@ -23,7 +23,7 @@ AvoidanceLoop::AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory
   if (settings.parts.empty()) {
     fail("avoidance loop: no part of the robot is asked about; the first one is the end effector");
   }
-  for (const RobotPart& part : settings.parts) {
+  for (const robot::LinkCapsule& part : settings.parts) {
     if (part.link >= model.links().size()) {
       fail("avoidance loop: a part moves with link ", part.link, ", the robot has ", model.links().size());
     }

@@ -20,9 +20,9 @@ namespace depthgrid::avoidance {
 
 struct LoopSettings {
   control::ControllerSettings controller;
-  control::PolygonSettings task;     ///< of the end effector's point
-  std::vector<RobotPart> parts;      ///< the first is the end effector: it is repelled; the others are the body
-  bool end_effector_limits = false;  ///< whether the end effector's approach is limited like that of the body, too
+  control::PolygonSettings task;          ///< of the end effector's point
+  std::vector<robot::LinkCapsule> parts;  ///< the first is the end effector: it is repelled; the others are the body
+  bool end_effector_limits = false;       ///< whether the end effector's approach is limited like that of the body, too
   Pose T_world_base = Pose::Identity();
   int evaluate_every = 1;  ///< periods between two evaluations; in between obstacles stand where they did
 };
@@ -55,7 +55,7 @@ class AvoidanceLoop {
   [[nodiscard]] const CycleReport& report() const noexcept { return report_; }
   /// Of the last evaluation, one a part, and where the parts are now.
   [[nodiscard]] std::span<const PartAnswer> answers() const noexcept { return answers_; }
-  [[nodiscard]] std::span<const search::Primitive> parts_world() const noexcept { return parts_world_; }
+  [[nodiscard]] std::span<const Capsule> parts_world() const noexcept { return parts_world_; }
   [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
   [[nodiscard]] const control::PolygonTask& task() const noexcept { return task_; }
 
@@ -73,7 +73,7 @@ class AvoidanceLoop {
   std::int64_t cycles_ = 0;
   control::JointState state_;
   std::vector<Pose> T_world_link_;
-  std::vector<search::Primitive> parts_world_;
+  std::vector<Capsule> parts_world_;
   std::vector<PartAnswer> answers_;
   std::vector<Eigen::Vector3d> at_link_;  ///< of the answers, in the frames of their links
   std::vector<control::BodyPoint> body_;

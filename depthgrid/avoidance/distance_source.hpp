@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "depthgrid/control/obstacle.hpp"
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/proximity.hpp"
-#include "depthgrid/search/primitive.hpp"
 
 namespace depthgrid::avoidance {
 
@@ -34,8 +34,7 @@ class DistanceSource {
   virtual bool take(std::span<const Frame> frames) noexcept = 0;
 
   /// parts_world and answers have the same size; `now_s` is on the frames' clock.
-  virtual void evaluate(std::span<const search::Primitive> parts_world, double now_s,
-                        std::span<PartAnswer> answers) noexcept = 0;
+  virtual void evaluate(std::span<const Capsule> parts_world, double now_s, std::span<PartAnswer> answers) noexcept = 0;
 };
 
 /// No avoidance: nothing is ever near.
@@ -43,8 +42,7 @@ class NoDistances final : public DistanceSource {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "none"; }
   bool take(std::span<const Frame> frames) noexcept override;
-  void evaluate(std::span<const search::Primitive> parts_world, double now_s,
-                std::span<PartAnswer> answers) noexcept override;
+  void evaluate(std::span<const Capsule> parts_world, double now_s, std::span<PartAnswer> answers) noexcept override;
 };
 
 }  // namespace depthgrid::avoidance

@@ -55,12 +55,11 @@ bool GridDistances::take(std::span<const Frame> frames) noexcept {
   return evaluator_.update(frames_);
 }
 
-void GridDistances::evaluate(std::span<const search::Primitive> parts_world, double /*now_s*/,
+void GridDistances::evaluate(std::span<const Capsule> parts_world, double /*now_s*/,
                              std::span<PartAnswer> answers) noexcept {
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const grid::Evaluation found = evaluator_.evaluate(parts_world[i].a_world);
-    answers[i] = {found.nearest, control::obstacle_of(found.nearest, found.hybrid_direction_world),
-                  parts_world[i].a_world};
+    const grid::Evaluation found = evaluator_.evaluate(parts_world[i].a);
+    answers[i] = {found.nearest, control::obstacle_of(found.nearest, found.hybrid_direction_world), parts_world[i].a};
   }
 }
 

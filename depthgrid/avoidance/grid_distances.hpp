@@ -31,8 +31,7 @@ class GridDistances final : public DistanceSource {
 
   [[nodiscard]] std::string_view name() const noexcept override { return "grid"; }
   bool take(std::span<const Frame> frames) noexcept override;
-  void evaluate(std::span<const search::Primitive> parts_world, double now_s,
-                std::span<PartAnswer> answers) noexcept override;
+  void evaluate(std::span<const Capsule> parts_world, double now_s, std::span<PartAnswer> answers) noexcept override;
 
  private:
   [[nodiscard]] Frame without_robot(std::size_t camera, const Frame& frame) noexcept;

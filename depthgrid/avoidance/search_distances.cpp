@@ -36,7 +36,7 @@ bool SearchDistances::take(std::span<const Frame> frames) noexcept {
   return all;
 }
 
-void SearchDistances::evaluate(std::span<const search::Primitive> parts_world, double now_s,
+void SearchDistances::evaluate(std::span<const Capsule> parts_world, double now_s,
                                std::span<PartAnswer> answers) noexcept {
   const std::size_t count = std::min({parts_world.size(), answers.size(), found_.size()});
   const views::Snapshot snapshot = store_.snapshot();
@@ -49,7 +49,7 @@ void SearchDistances::evaluate(std::span<const search::Primitive> parts_world, d
     if (i >= count) {
       answers[i] = PartAnswer{};
       if (i < parts_world.size()) {
-        answers[i].at_world = parts_world[i].a_world;
+        answers[i].at_world = parts_world[i].a;
       }
       continue;
     }
@@ -57,7 +57,7 @@ void SearchDistances::evaluate(std::span<const search::Primitive> parts_world, d
     answers[i].nearest = found.nearest;
     answers[i].obstacle =
         control::obstacle_of(found.nearest, found.hybrid_direction_world, age_s, snapshot.settings().v_max_m_s);
-    answers[i].at_world = found.on_axis_world.allFinite() ? found.on_axis_world : parts_world[i].a_world;
+    answers[i].at_world = found.on_axis_world.allFinite() ? found.on_axis_world : parts_world[i].a;
     ++answered_;
     stopped_ += found.nearest.budget ? 1 : 0;
   }

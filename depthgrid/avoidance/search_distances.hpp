@@ -25,8 +25,7 @@ class SearchDistances final : public DistanceSource {
 
   [[nodiscard]] std::string_view name() const noexcept override { return "search"; }
   bool take(std::span<const Frame> frames) noexcept override;
-  void evaluate(std::span<const search::Primitive> parts_world, double now_s,
-                std::span<PartAnswer> answers) noexcept override;
+  void evaluate(std::span<const Capsule> parts_world, double now_s, std::span<PartAnswer> answers) noexcept override;
 
   /// Answers so far, and those of them that the budget ended.
   [[nodiscard]] std::int64_t answered() const noexcept { return answered_; }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <optional>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/files/number_parsing.hpp"
@@ -103,17 +104,18 @@ Eigen::Vector3d position_m(const Place& place, std::span<const CsvValue> xyz) {
 
 /// `values`: x,y,z and, where the columns are there, radius and x2,y2,z2.
 ControlPoint point_of(const std::string& id, const Place& place, std::span<const CsvValue> values) {
-  ControlPoint point{id, position_m(place, values.first<3>()), 0, std::nullopt};
+  ControlPoint point{id, Capsule::point(position_m(place, values.first<3>()))};
   if (values.size() >= kSphere - 1 && !values[3].text.empty()) {
-    point.radius_m = length_m(place, values[3], "radius");
-    if (point.radius_m < 0) {
+    point.capsule.radius_m = length_m(place, values[3], "radius");
+    if (point.capsule.radius_m < 0) {
       fail_at(place, values[3], "radius is '" + std::string(values[3].text) + "', must not be negative");
     }
   }
   if (values.size() == kCapsule - 1) {
     const std::span<const CsvValue> end = values.last<3>();
     if (!std::all_of(end.begin(), end.end(), [](const CsvValue& value) { return value.text.empty(); })) {
-      point.end_m.emplace(length_m(place, end[0], "x2"), length_m(place, end[1], "y2"), length_m(place, end[2], "z2"));
+      point.capsule.b = {length_m(place, end[0], "x2"), length_m(place, end[1], "y2"), length_m(place, end[2], "z2")};
+      point.has_end = true;
     }
   }
   return point;

@@ -1,24 +1,22 @@
 // Control points: the points, spheres and capsules of the robot whose distances are asked for.
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "depthgrid/core/capsule.hpp"
+
 namespace depthgrid::files {
 
-/// A named point in metres, in the frame that its user says (world or floor). With a radius it is a sphere, with an end
-/// too a capsule: all points within the radius of the segment from p_m to end_m.
+/// A named point, sphere or capsule, in the frame that its user says (world or floor).
 struct ControlPoint {
   std::string id;
-  Eigen::Vector3d p_m = Eigen::Vector3d::Zero();
-  double radius_m = 0;
-  std::optional<Eigen::Vector3d> end_m{};
+  Capsule capsule;
+  bool has_end = false;  ///< a second end was given; without one it is the first
 };
 
 /// Points that stay where they are, or points given anew for every frame of a recording. One of the two is empty.

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "depthgrid/robot/capsule.hpp"
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/robot/robot_description.hpp"
 
 namespace depthgrid::robot {

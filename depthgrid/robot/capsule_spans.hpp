@@ -4,7 +4,7 @@
 #include <span>
 
 #include "depthgrid/core/camera.hpp"
-#include "depthgrid/robot/capsule.hpp"
+#include "depthgrid/core/capsule.hpp"
 
 namespace depthgrid::robot {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "depthgrid/robot/capsule.hpp"
+#include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/robot_model.hpp"
 
 namespace depthgrid::robot {

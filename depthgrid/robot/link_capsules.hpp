@@ -1,14 +1,21 @@
 // The capsules that contain a robot's links.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "depthgrid/robot/capsule.hpp"
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/robot/robot_model.hpp"
 
 namespace depthgrid::robot {
+
+/// A capsule fixed to a link of a RobotModel, in the link's frame.
+struct LinkCapsule {
+  std::size_t link = 0;
+  Capsule capsule;
+};
 
 struct CapsuleOptions {
   /// Links that get no capsule: a floor plate that came with the file, for one. Cameras see them as obstacles.

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "depthgrid/robot/capsule.hpp"
+#include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/robot_model.hpp"
 
 namespace depthgrid::robot {

@@ -8,8 +8,8 @@
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/pose.hpp"
-#include "depthgrid/robot/capsule.hpp"
 #include "depthgrid/robot/capsule_spans.hpp"
+#include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/robot_rows.hpp"
 
 namespace depthgrid::robot {

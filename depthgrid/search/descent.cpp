@@ -190,9 +190,9 @@ AxisToBox Descent::towards_centre(const Cube& cube, const LocalAxis& axis) const
   return result;
 }
 
-std::size_t Descent::add(const Primitive& primitive, double limit_m) noexcept {
+std::size_t Descent::add(const Capsule& primitive, double limit_m) noexcept {
   const std::size_t i = axis_count_++;
-  axes_[i] = {primitive.a_world - origin_world_, primitive.b_world - origin_world_, primitive.radius_m};
+  axes_[i] = {primitive.a - origin_world_, primitive.b - origin_world_, primitive.radius_m};
   found_[i] = Nearest{};
   found_[i].limit_m = limit_m;
   found_[i].distance_m = limit_m;

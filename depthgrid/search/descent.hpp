@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/search/allowance.hpp"
 #include "depthgrid/search/axis_distance.hpp"
 #include "depthgrid/search/cube_test.hpp"
-#include "depthgrid/search/primitive.hpp"
 #include "depthgrid/search/search.hpp"
 
 namespace depthgrid::search {
@@ -33,7 +33,7 @@ class Descent {
   void aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept;
 
   /// Adds a primitive (at most kGroup) whose obstacles within limit_m of its axis are of interest. Returns its index.
-  std::size_t add(const Primitive& primitive, double limit_m) noexcept;
+  std::size_t add(const Capsule& primitive, double limit_m) noexcept;
 
   /// Finds the nearest obstacles of all primitives of the group. One within a primitive's radius ends its search.
   void find(Allowance& allowance) noexcept;

@@ -18,8 +18,8 @@ constexpr double kGroupExtent = 2.0;
 /// Open cubes that one search may hold.
 constexpr std::size_t kFrontierCapacity = std::size_t{1} << 17;
 
-bool is_valid(const Primitive& primitive) noexcept {
-  return primitive.a_world.allFinite() && primitive.b_world.allFinite() && std::isfinite(primitive.radius_m) &&
+bool is_valid(const Capsule& primitive) noexcept {
+  return primitive.a.allFinite() && primitive.b.allFinite() && std::isfinite(primitive.radius_m) &&
          primitive.radius_m >= 0;
 }
 
@@ -28,7 +28,7 @@ bool is_valid(const Primitive& primitive) noexcept {
 /// What is known of a primitive before the search, and how far it has to reach.
 struct Search::Plan {
   std::size_t answer = 0;  ///< index in the call
-  Primitive primitive;
+  Capsule primitive;
   Border border;                ///< of W, from the end of the axis that is nearer to it
   Eigen::Vector3d border_axis;  ///< that end
   double limit_m = 0;           ///< from the axis
@@ -38,7 +38,7 @@ struct Search::Plan {
 struct Search::State {
   State() : frontier(kFrontierCapacity) {}
 
-  void call(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+  void call(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
             const Budget& budget, Count* count, bool with_direction) noexcept;
   void group(const views::Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
              Allowance& allowance, bool with_direction) noexcept;
@@ -50,7 +50,7 @@ struct Search::State {
 };
 
 /// Fills in what needs no search. False when that is all there is to say.
-bool Search::plan(const views::Snapshot& snapshot, const Primitive& primitive, Answer& result, Plan& plan) noexcept {
+bool Search::plan(const views::Snapshot& snapshot, const Capsule& primitive, Answer& result, Plan& plan) noexcept {
   result = Answer{};
   if (!is_valid(primitive)) {
     return false;
@@ -59,12 +59,12 @@ bool Search::plan(const views::Snapshot& snapshot, const Primitive& primitive, A
   nearest.stale = snapshot.stale();
   const views::Settings& s = snapshot.settings();
   // W is convex: of a segment's distances to its border the least is at an end.
-  const Border at_a = border_of_space(snapshot, primitive.a_world);
-  const Border at_b = border_of_space(snapshot, primitive.b_world);
+  const Border at_a = border_of_space(snapshot, primitive.a);
+  const Border at_b = border_of_space(snapshot, primitive.b);
   const bool a_first = at_a.distance_m <= at_b.distance_m;
   plan.primitive = primitive;
   plan.border = a_first ? at_a : at_b;
-  plan.border_axis = a_first ? primitive.a_world : primitive.b_world;
+  plan.border_axis = a_first ? primitive.a : primitive.b;
   const bool outside_counts = s.policies.outside == views::Policy::obstacle;
   if (!(plan.border.distance_m >= 0)) {
     nearest.state = ProximityState::outside;
@@ -119,12 +119,12 @@ void Search::finish(const views::Snapshot& snapshot, const Plan& plan, const Nea
 void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan> group_plans, std::span<Answer> answers,
                           Descent& descent, Allowance& allowance, bool with_direction) noexcept {
   const double rho_m = snapshot.settings().rho_m;
-  Eigen::Vector3d low = group_plans.front().primitive.a_world;
+  Eigen::Vector3d low = group_plans.front().primitive.a;
   Eigen::Vector3d high = low;
   double reach_m = 0;
   for (const Plan& p : group_plans) {
-    low = low.cwiseMin(p.primitive.a_world).cwiseMin(p.primitive.b_world);
-    high = high.cwiseMax(p.primitive.a_world).cwiseMax(p.primitive.b_world);
+    low = low.cwiseMin(p.primitive.a).cwiseMin(p.primitive.b);
+    high = high.cwiseMax(p.primitive.a).cwiseMax(p.primitive.b);
     reach_m = std::max(reach_m, rho_m + p.primitive.radius_m);
   }
   descent.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + reach_m);
@@ -154,7 +154,7 @@ void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan>
   }
 }
 
-void Search::State::call(const views::Snapshot& snapshot, std::span<const Primitive> primitives,
+void Search::State::call(const views::Snapshot& snapshot, std::span<const Capsule> primitives,
                          std::span<Answer> answers, const Budget& budget, Count* count, bool with_direction) noexcept {
   Count own;
   Descent descent(snapshot, query, frontier, count != nullptr ? *count : own);
@@ -177,8 +177,8 @@ void Search::State::call(const views::Snapshot& snapshot, std::span<const Primit
       if (!plan(snapshot, primitives[next], answers[next], plans[size])) {
         continue;
       }
-      const Eigen::Vector3d to_low = low.cwiseMin(primitives[next].a_world).cwiseMin(primitives[next].b_world);
-      const Eigen::Vector3d to_high = high.cwiseMax(primitives[next].a_world).cwiseMax(primitives[next].b_world);
+      const Eigen::Vector3d to_low = low.cwiseMin(primitives[next].a).cwiseMin(primitives[next].b);
+      const Eigen::Vector3d to_high = high.cwiseMax(primitives[next].a).cwiseMax(primitives[next].b);
       if (size > 0 && (to_high - to_low).maxCoeff() > kGroupExtent) {
         break;
       }
@@ -206,12 +206,12 @@ Search::~Search() = default;
 Search::Search(Search&&) noexcept = default;
 Search& Search::operator=(Search&&) noexcept = default;
 
-void Search::distances(const views::Snapshot& snapshot, std::span<const Primitive> primitives,
-                       std::span<Answer> answers, const Budget& budget, Count* count) noexcept {
+void Search::distances(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
+                       const Budget& budget, Count* count) noexcept {
   state_->call(snapshot, primitives, answers, budget, count, false);
 }
 
-void Search::hybrid(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+void Search::hybrid(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
                     const Budget& budget, Count* count) noexcept {
   state_->call(snapshot, primitives, answers, budget, count, true);
 }

@@ -16,8 +16,8 @@
 #include <memory>
 #include <span>
 
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/proximity.hpp"
-#include "depthgrid/search/primitive.hpp"
 #include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
@@ -68,17 +68,17 @@ class Search {
   /// Distances of many primitives. answers.size() should equal primitives.size(); answers without a primitive, and
   /// those of primitives that are not finite or have a negative radius, are not_evaluated. Primitives beside each
   /// other in the call that are near to each other are searched together. Does not allocate, lock or throw.
-  void distances(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+  void distances(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
                  const Budget& budget = {}, Count* count = nullptr) noexcept;
 
   /// The same with hybrid_direction_world, equation (11) in its corrected form.
-  void hybrid(const views::Snapshot& snapshot, std::span<const Primitive> primitives, std::span<Answer> answers,
+  void hybrid(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
               const Budget& budget = {}, Count* count = nullptr) noexcept;
 
  private:
   struct State;
   struct Plan;
-  [[nodiscard]] static bool plan(const views::Snapshot& snapshot, const Primitive& primitive, Answer& result,
+  [[nodiscard]] static bool plan(const views::Snapshot& snapshot, const Capsule& primitive, Answer& result,
                                  Plan& plan) noexcept;
   static void finish(const views::Snapshot& snapshot, const Plan& plan, const Nearest& found,
                      const Eigen::Vector3d& origin_world, Answer& result) noexcept;

@@ -74,8 +74,7 @@ PixelBounds image_bounds(const PinholeCamera& camera, const Sphere& sphere) noex
 }
 
 PixelBounds image_bounds(const PinholeCamera& camera, const Capsule& capsule) noexcept {
-  const std::array<Sphere, 2> ends{Sphere{capsule.a_world, capsule.radius_m},
-                                   Sphere{capsule.b_world, capsule.radius_m}};
+  const std::array<Sphere, 2> ends{Sphere{capsule.a, capsule.radius_m}, Sphere{capsule.b, capsule.radius_m}};
   return bounds_of_hull(camera, ends);
 }
 

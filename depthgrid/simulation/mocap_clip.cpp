@@ -78,8 +78,7 @@ MocapClip::MocapClip(const MocapSkeleton& skeleton, const std::vector<MocapFrame
     if (frames_.size() > 1) {
       const std::vector<Capsule>& before = frames_[frames_.size() - 2];
       for (std::size_t i = 0; i < body.size(); ++i) {
-        const double moved_m =
-            std::max((body[i].a_world - before[i].a_world).norm(), (body[i].b_world - before[i].b_world).norm());
+        const double moved_m = std::max((body[i].a - before[i].a).norm(), (body[i].b - before[i].b).norm());
         v_max_m_s_ = std::max(v_max_m_s_, moved_m * rate_hz);
       }
     }
@@ -101,8 +100,8 @@ std::vector<Capsule> MocapClip::at(double time_s, const Pose& T_world_floor) con
   std::vector<Capsule> body = frames_[first];
   for (std::size_t i = 0; i < body.size(); ++i) {
     const Capsule& next = frames_[second][i];
-    body[i].a_world = T_world_floor * (body[i].a_world + share * (next.a_world - body[i].a_world));
-    body[i].b_world = T_world_floor * (body[i].b_world + share * (next.b_world - body[i].b_world));
+    body[i].a = T_world_floor * (body[i].a + share * (next.a - body[i].a));
+    body[i].b = T_world_floor * (body[i].b + share * (next.b - body[i].b));
   }
   return body;
 }
@@ -111,8 +110,8 @@ Eigen::Vector3d MocapClip::middle_m() const noexcept {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d high = -low;
   for (const std::vector<Capsule>& body : frames_) {
-    low = low.cwiseMin(body.front().a_world);
-    high = high.cwiseMax(body.front().a_world);
+    low = low.cwiseMin(body.front().a);
+    high = high.cwiseMax(body.front().a);
   }
   Eigen::Vector3d middle = 0.5 * (low + high);
   middle.z() = 0;

@@ -28,8 +28,8 @@ PersonPose pose_of(const PersonConfiguration& c) {
 
 /// Turns both ends of a capsule about an axis through `joint`.
 void turn(Capsule& part, const Eigen::Vector3d& joint, const Eigen::Matrix3d& rotation) {
-  part.a_world = joint + rotation * (part.a_world - joint);
-  part.b_world = joint + rotation * (part.b_world - joint);
+  part.a = joint + rotation * (part.a - joint);
+  part.b = joint + rotation * (part.b - joint);
 }
 
 }  // namespace
@@ -41,34 +41,34 @@ std::array<Capsule, 17> person(const PersonConfiguration& c) noexcept {
   for (std::size_t side = 0; side < 2; ++side) {
     Capsule* const arm = &parts[kUpperArms[side]];
     const ArmDirections& directions = c.arms[side];
-    Eigen::Vector3d joint = arm[0].a_world;
+    Eigen::Vector3d joint = arm[0].a;
     std::size_t i = 0;
     for (const Eigen::Vector3d* direction : {&directions.upper_arm, &directions.forearm, &directions.hand}) {
-      arm[i].a_world = joint;
+      arm[i].a = joint;
       joint += kArmLengths[i] * (upper * *direction);
-      arm[i++].b_world = joint;
+      arm[i++].b = joint;
     }
     Capsule* const leg = &parts[kThighs[side]];
     // About the axis to the left a positive turn is backwards for what hangs down.
     const Eigen::Matrix3d hip = about(-c.legs[side].hip_rad, to_the_left);
-    const Eigen::Vector3d hip_joint = leg[0].a_world;
+    const Eigen::Vector3d hip_joint = leg[0].a;
     for (std::size_t bone = 0; bone < 3; ++bone) {
       turn(leg[bone], hip_joint, hip);
     }
     const Eigen::Matrix3d knee = about(c.legs[side].knee_rad, to_the_left);
-    const Eigen::Vector3d knee_joint = leg[1].a_world;
+    const Eigen::Vector3d knee_joint = leg[1].a;
     turn(leg[1], knee_joint, knee);
     turn(leg[2], knee_joint, knee);
   }
-  double lowest_m = parts[kThighs[0] + 2].a_world.z();
+  double lowest_m = parts[kThighs[0] + 2].a.z();
   for (const std::size_t thigh : kThighs) {
     const Capsule& foot = parts[thigh + 2];
-    lowest_m = std::min({lowest_m, foot.a_world.z(), foot.b_world.z()});
+    lowest_m = std::min({lowest_m, foot.a.z(), foot.b.z()});
   }
   const double sunk_m = lowest_m - parts[kThighs[0] + 2].radius_m - c.floor_m;
   for (Capsule& part : parts) {
-    part.a_world.z() -= sunk_m;
-    part.b_world.z() -= sunk_m;
+    part.a.z() -= sunk_m;
+    part.b.z() -= sunk_m;
   }
   return parts;
 }
@@ -81,13 +81,13 @@ ArmDirections arm_towards(const PersonConfiguration& c, std::size_t side,
   const Eigen::Matrix3d to_upper = upper_body(c).transpose();
   const auto direction = [&](std::size_t i) {
     const Capsule& bone = parts[kUpperArms[side] + i];
-    return Eigen::Vector3d(to_upper * (bone.b_world - bone.a_world).normalized());
+    return Eigen::Vector3d(to_upper * (bone.b - bone.a).normalized());
   };
   return {direction(0), direction(1), direction(2)};
 }
 
 Eigen::Vector3d between_hands(const std::array<Capsule, 17>& parts) noexcept {
-  return 0.5 * (parts[kUpperArms[0] + 2].b_world + parts[kUpperArms[1] + 2].b_world);
+  return 0.5 * (parts[kUpperArms[0] + 2].b + parts[kUpperArms[1] + 2].b);
 }
 
 }  // namespace depthgrid::simulation

@@ -54,8 +54,8 @@ double heading_difference(double from_rad, double to_rad) {
 double largest_move_m(const PersonState& before, const PersonState& after) {
   double largest_m = 0;
   for (std::size_t i = 0; i < before.parts_world.size(); ++i) {
-    largest_m = std::max({largest_m, (after.parts_world[i].a_world - before.parts_world[i].a_world).norm(),
-                          (after.parts_world[i].b_world - before.parts_world[i].b_world).norm()});
+    largest_m = std::max({largest_m, (after.parts_world[i].a - before.parts_world[i].a).norm(),
+                          (after.parts_world[i].b - before.parts_world[i].b).norm()});
   }
   if (before.carried_world && after.carried_world) {
     const Eigen::Vector3d& half_m = before.carried_world->half_size_m;

@@ -86,8 +86,8 @@ void validate(const Sphere& sphere) {
 }
 
 void validate(const Capsule& capsule) {
-  require_finite("capsule: end a", capsule.a_world);
-  require_finite("capsule: end b", capsule.b_world);
+  require_finite("capsule: end a", capsule.a);
+  require_finite("capsule: end b", capsule.b);
   require_positive("capsule: radius", capsule.radius_m);
 }
 
@@ -110,11 +110,7 @@ Eigen::Vector3d nearest_point(const Sphere& sphere, const Eigen::Vector3d& p_wor
 }
 
 Eigen::Vector3d nearest_point(const Capsule& capsule, const Eigen::Vector3d& p_world) noexcept {
-  const Eigen::Vector3d axis = capsule.b_world - capsule.a_world;
-  const double squared_length = axis.squaredNorm();
-  const double s =
-      squared_length > 0 ? std::clamp(axis.dot(p_world - capsule.a_world) / squared_length, 0.0, 1.0) : 0.0;
-  return nearest_point(Sphere{capsule.a_world + s * axis, capsule.radius_m}, p_world);
+  return nearest_point(Sphere{nearest_on_axis(capsule, p_world), capsule.radius_m}, p_world);
 }
 
 bool contains(const Plane& plane, const Eigen::Vector3d& p_world) noexcept {
@@ -131,11 +127,7 @@ bool contains(const Sphere& sphere, const Eigen::Vector3d& p_world) noexcept {
 }
 
 bool contains(const Capsule& capsule, const Eigen::Vector3d& p_world) noexcept {
-  const Eigen::Vector3d axis = capsule.b_world - capsule.a_world;
-  const double squared_length = axis.squaredNorm();
-  const double s =
-      squared_length > 0 ? std::clamp(axis.dot(p_world - capsule.a_world) / squared_length, 0.0, 1.0) : 0.0;
-  return contains(Sphere{capsule.a_world + s * axis, capsule.radius_m}, p_world);
+  return contains(Sphere{nearest_on_axis(capsule, p_world), capsule.radius_m}, p_world);
 }
 
 Interval intersect(const Plane& plane, const Line& line) noexcept {
@@ -164,14 +156,14 @@ Interval intersect(const Sphere& sphere, const Line& line) noexcept {
 }
 
 Interval intersect(const Capsule& capsule, const Line& line) noexcept {
-  const Eigen::Vector3d to_a = capsule.a_world - line.origin;
-  const Eigen::Vector3d axis = capsule.b_world - capsule.a_world;
+  const Eigen::Vector3d to_a = capsule.a - line.origin;
+  const Eigen::Vector3d axis = capsule.b - capsule.a;
   const double length_m = axis.norm();
   Interval interval = ball(to_a, line.direction, capsule.radius_m);
   if (!(length_m > 0)) {
     return interval;
   }
-  interval = hull(interval, ball(capsule.b_world - line.origin, line.direction, capsule.radius_m));
+  interval = hull(interval, ball(capsule.b - line.origin, line.direction, capsule.radius_m));
 
   // The cylinder between the two end planes: in the plane across the axis it is a disc.
   const Eigen::Vector3d unit_axis = axis / length_m;
@@ -196,7 +188,7 @@ Sphere grown(const Sphere& sphere, double padding_m) noexcept {
   return {sphere.centre_world, sphere.radius_m + padding_m};
 }
 Capsule grown(const Capsule& capsule, double padding_m) noexcept {
-  return {capsule.a_world, capsule.b_world, capsule.radius_m + padding_m};
+  return {capsule.a, capsule.b, capsule.radius_m + padding_m};
 }
 
 Plane transformed(const Pose& T_A_world, const Plane& plane) noexcept {
@@ -210,7 +202,7 @@ Sphere transformed(const Pose& T_A_world, const Sphere& sphere) noexcept {
   return {T_A_world * sphere.centre_world, sphere.radius_m};
 }
 Capsule transformed(const Pose& T_A_world, const Capsule& capsule) noexcept {
-  return {T_A_world * capsule.a_world, T_A_world * capsule.b_world, capsule.radius_m};
+  return {T_A_world * capsule.a, T_A_world * capsule.b, capsule.radius_m};
 }
 
 }  // namespace depthgrid::simulation

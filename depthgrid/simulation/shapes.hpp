@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/pose.hpp"
 
 namespace depthgrid::simulation {
@@ -19,12 +20,6 @@ struct Box {
 };
 struct Sphere {
   Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();
-  double radius_m = 0.1;
-};
-/// All points within radius_m of the segment a-b; a = b is a sphere.
-struct Capsule {
-  Eigen::Vector3d a_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d b_world = Eigen::Vector3d::UnitZ();
   double radius_m = 0.1;
 };
 

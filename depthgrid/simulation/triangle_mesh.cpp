@@ -14,7 +14,7 @@ TriangleMesh round_mesh(const Capsule& capsule, int segments, bool two_ends) {
   if (segments < 3) {
     fail("mesh of a round solid: ", segments, " segments around its axis, must be at least 3");
   }
-  const Eigen::Vector3d ab = capsule.b_world - capsule.a_world;
+  const Eigen::Vector3d ab = capsule.b - capsule.a;
   const Eigen::Vector3d axis = two_ends ? Eigen::Vector3d(ab.normalized()) : Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d x = axis.unitOrthogonal();
   const Eigen::Vector3d y = axis.cross(x);
@@ -30,15 +30,15 @@ TriangleMesh round_mesh(const Capsule& capsule, int segments, bool two_ends) {
   };
   int rings = 0;
   for (int i = 1; i <= half_rings; ++i, ++rings) {
-    ring(capsule.b_world, 0.5 * std::numbers::pi * i / half_rings);
+    ring(capsule.b, 0.5 * std::numbers::pi * i / half_rings);
   }
   for (int i = two_ends ? 0 : 1; i < half_rings; ++i, ++rings) {
-    ring(capsule.a_world, 0.5 * std::numbers::pi * (1 + static_cast<double>(i) / half_rings));
+    ring(capsule.a, 0.5 * std::numbers::pi * (1 + static_cast<double>(i) / half_rings));
   }
   const int top = rings * segments;
   const int bottom = top + 1;
-  mesh.vertices_m.emplace_back((capsule.b_world + capsule.radius_m * axis).cast<float>());
-  mesh.vertices_m.emplace_back((capsule.a_world - capsule.radius_m * axis).cast<float>());
+  mesh.vertices_m.emplace_back((capsule.b + capsule.radius_m * axis).cast<float>());
+  mesh.vertices_m.emplace_back((capsule.a - capsule.radius_m * axis).cast<float>());
   for (int k = 0; k < segments; ++k) {
     const int next = (k + 1) % segments;
     mesh.triangles.emplace_back(top, k, next);
@@ -100,7 +100,7 @@ TriangleMesh mesh_of(const Sphere& sphere, int segments) {
 
 TriangleMesh mesh_of(const Capsule& capsule, int segments) {
   validate(capsule);
-  return round_mesh(capsule, segments, (capsule.b_world - capsule.a_world).norm() > 0);
+  return round_mesh(capsule, segments, (capsule.b - capsule.a).norm() > 0);
 }
 
 double inscribed_depth_m(double radius_m, int segments) noexcept {

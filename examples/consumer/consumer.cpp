@@ -39,9 +39,8 @@ int main() try {
   }
 
   const depthgrid::files::ControlPoint point = depthgrid::files::parse_control_point("0,0,1.8", "wrist");
-  const search::Primitive wrist = search::point(point.p_m);
   search::Answer answer;
-  search.distances(store.snapshot(), {&wrist, 1}, {&answer, 1});
+  search.distances(store.snapshot(), {&point.capsule, 1}, {&answer, 1});
   std::cout << point.id << ": " << answer.nearest.distance_m << " m, " << depthgrid::to_string(answer.nearest.state)
             << '\n';
   return 0;

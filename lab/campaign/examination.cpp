@@ -55,8 +55,8 @@ std::vector<std::string> kinds_of(const SearchProblem& problem) {
   return kinds;
 }
 
-const char* shape_of(const search::Primitive& primitive) {
-  return primitive.a_world != primitive.b_world ? "capsules" : primitive.radius_m > 0 ? "spheres" : "points";
+const char* shape_of(const Capsule& primitive) {
+  return primitive.a != primitive.b ? "capsules" : primitive.radius_m > 0 ? "spheres" : "points";
 }
 
 void note(Tally& tally, const SearchProblem& problem, std::size_t query, const std::string& kind,
@@ -146,7 +146,7 @@ void examine_answers(const SearchProblem& problem, std::span<const search::Answe
   }
   const AnswerCheck check(problem);
   for (std::size_t q = 0; q < answers.size(); ++q) {
-    const search::Primitive& primitive = problem.primitives[q];
+    const Capsule& primitive = problem.primitives[q];
     Row found;
     for (const auto& finding : {check.form(primitive, answers[q]), check.soundness(primitive, answers[q]).finding}) {
       if (finding) {

@@ -33,7 +33,7 @@ struct Case {
   double mean_m = 0;
 };
 
-Case run(const views::ViewStore& store, const std::vector<search::Primitive>& points, const search::Budget& budget) {
+Case run(const views::ViewStore& store, const std::vector<Capsule>& points, const search::Budget& budget) {
   search::Search searcher;
   std::vector<search::Answer> answers(points.size());
   const views::Snapshot snapshot = store.snapshot();
@@ -92,11 +92,11 @@ int write_table() {
   std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
   for (const int cameras : {2, 8}) {
     const Rig rig = workload_rig(cameras);
-    std::vector<search::Primitive> on_arm;
+    std::vector<Capsule> on_arm;
     for (const Eigen::Vector3d& p : workload_points(0)) {
-      on_arm.push_back(search::point(p));
+      on_arm.push_back(Capsule::point(p));
     }
-    std::vector<search::Primitive> on_camera(9, search::point(rig.cameras[0].T_world_camera.translation()));
+    std::vector<Capsule> on_camera(9, Capsule::point(rig.cameras[0].T_world_camera.translation()));
     for (const Scene& scene : scenes) {
       std::mt19937 generator(7);
       std::vector<std::vector<std::uint16_t>> images(static_cast<std::size_t>(cameras));

@@ -36,7 +36,7 @@ void SearchPeer::prepare(std::span<const Frame> frames, const Region& /*region*/
 void SearchPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<double> distances_m) {
   primitives_.resize(points_world.size());
   answers_.resize(points_world.size());
-  std::transform(points_world.begin(), points_world.end(), primitives_.begin(), search::point);
+  std::transform(points_world.begin(), points_world.end(), primitives_.begin(), Capsule::point);
   search_.distances(snapshot_, primitives_, answers_);
   for (std::size_t i = 0; i < answers_.size(); ++i) {
     distances_m[i] = has_distance(answers_[i].nearest) ? answers_[i].nearest.distance_m : rho_m_;

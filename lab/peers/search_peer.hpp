@@ -27,7 +27,7 @@ class SearchPeer : public Peer {
   views::ViewStore store_;
   views::Snapshot snapshot_;
   search::Search search_;
-  std::vector<search::Primitive> primitives_;
+  std::vector<Capsule> primitives_;
   std::vector<search::Answer> answers_;
 };
 

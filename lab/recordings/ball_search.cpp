@@ -155,9 +155,9 @@ std::vector<BallSearchFigures> study_ball_search(files::Recording& recording, co
           }
         }
         const auto points = points_around(ball.centre);
-        std::vector<search::Primitive> primitives;
+        std::vector<Capsule> primitives;
         for (const auto& p : points) {
-          primitives.push_back(search::point(p));
+          primitives.push_back(Capsule::point(p));
         }
         std::vector<search::Answer> answers(points.size());
         search.distances(store.snapshot(), primitives, answers);

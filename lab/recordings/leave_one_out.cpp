@@ -88,8 +88,8 @@ std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const 
   const MeasurementRule& rule = left_out.rule;
   const Eigen::Vector3d centre = left_out.T_world_camera.translation();
   std::vector<LeftOutReading> readings;
-  std::vector<search::Primitive> points;
-  std::vector<search::Primitive> before;
+  std::vector<Capsule> points;
+  std::vector<Capsule> before;
   for (int v = stride / 2; v < depth.height_px(); v += stride) {
     for (int u = stride / 2; u < depth.width_px(); u += stride) {
       LeftOutReading reading;
@@ -107,8 +107,8 @@ std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const 
       }
       reading.allowance_m = allowance_m(margins, settings_.v_max_m_s, p_camera.z(), p_camera.norm());
       readings.push_back(reading);
-      points.push_back(search::point(reading.p_world));
-      before.push_back(search::point(reading.p_world + kProbe_m * (centre - reading.p_world).normalized()));
+      points.push_back(Capsule::point(reading.p_world));
+      before.push_back(Capsule::point(reading.p_world + kProbe_m * (centre - reading.p_world).normalized()));
     }
   }
   std::vector<search::Answer> answers(points.size());

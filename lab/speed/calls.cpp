@@ -8,16 +8,13 @@ namespace depthgrid::lab {
 
 Questions as_points(const std::vector<Eigen::Vector3d>& points_world) {
   Questions questions(points_world.size());
-  std::transform(points_world.begin(), points_world.end(), questions.begin(), search::point);
+  std::transform(points_world.begin(), points_world.end(), questions.begin(), Capsule::point);
   return questions;
 }
 
 Questions as_links(double time_s) {
-  Questions questions;
-  for (const simulation::Capsule& link : workload_arm(time_s).links) {
-    questions.push_back(search::capsule(link.a_world, link.b_world, link.radius_m));
-  }
-  return questions;
+  const auto links = workload_arm(time_s).links;
+  return {links.begin(), links.end()};
 }
 
 double time_between_s(int set, int repetition) {

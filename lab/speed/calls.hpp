@@ -14,7 +14,7 @@ namespace depthgrid::lab {
 /// Of all figures but those that vary it, metres.
 inline constexpr double kResolution = 0.005;
 
-using Questions = std::vector<search::Primitive>;
+using Questions = std::vector<Capsule>;
 
 [[nodiscard]] Questions as_points(const std::vector<Eigen::Vector3d>& points_world);
 /// The seven capsules of the workload's arm.

@@ -158,9 +158,9 @@ void EmbreeScene::update(const Workcell& cell) {
   std::vector<float> boxes;
   for (const WorkcellBody& body : cell.bodies) {
     const Pose& T = body.T_world_body;
-    for (const simulation::Capsule& c : body.capsules) {
-      append(capsules, T * c.a_world, c.radius_m);
-      append(capsules, T * c.b_world, c.radius_m);
+    for (const Capsule& c : body.capsules) {
+      append(capsules, T * c.a, c.radius_m);
+      append(capsules, T * c.b, c.radius_m);
     }
     for (const simulation::Sphere& s : body.spheres) {
       append(spheres, T * s.centre_world, s.radius_m);

@@ -13,7 +13,6 @@
 namespace depthgrid::workcell {
 
 using simulation::Box;
-using simulation::Capsule;
 using simulation::Plane;
 using simulation::Sphere;
 using simulation::TriangleMesh;
@@ -45,13 +44,13 @@ Part part(const Sphere& sphere) {
 
 /// FCL's capsules lie along z with the origin in the middle.
 Part part(const Capsule& capsule) {
-  const Eigen::Vector3d ab = capsule.b_world - capsule.a_world;
+  const Eigen::Vector3d ab = capsule.b - capsule.a;
   if (ab.norm() == 0) {
-    return part(Sphere{capsule.a_world, capsule.radius_m});
+    return part(Sphere{capsule.a, capsule.radius_m});
   }
   Pose T_body_part = Pose::Identity();
   T_body_part.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ab).toRotationMatrix();
-  T_body_part.translation() = 0.5 * (capsule.a_world + capsule.b_world);
+  T_body_part.translation() = 0.5 * (capsule.a + capsule.b);
   return part(std::make_shared<fcl::Capsuled>(capsule.radius_m, ab.norm()), T_body_part,
               0.5 * ab.norm() + capsule.radius_m);
 }

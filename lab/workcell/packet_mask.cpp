@@ -8,7 +8,8 @@
 namespace depthgrid::workcell {
 
 using simulation::Box;
-using simulation::Capsule;
+using simulation::image_bounds;
+using simulation::transformed;
 using simulation::Workcell;
 using simulation::WorkcellBody;
 
@@ -54,12 +55,12 @@ void PacketMask::add(const Shape& shape_camera) {
 /// A capsule across the image fills little of the rectangle around it.
 void PacketMask::add_in_pieces(const Capsule& capsule_camera) {
   constexpr int kMostPieces = 8;
-  const Eigen::Vector3d ab = capsule_camera.b_world - capsule_camera.a_world;
+  const Eigen::Vector3d ab = capsule_camera.b - capsule_camera.a;
   const double wanted = std::min<double>(kMostPieces, std::ceil(ab.norm() / capsule_camera.radius_m));
   const int pieces = std::max(1, static_cast<int>(wanted));
   const Eigen::Vector3d piece = ab / pieces;
   for (int i = 0; i < pieces; ++i) {
-    add(Capsule{capsule_camera.a_world + i * piece, capsule_camera.a_world + (i + 1) * piece, capsule_camera.radius_m});
+    add(Capsule{capsule_camera.a + i * piece, capsule_camera.a + (i + 1) * piece, capsule_camera.radius_m});
   }
 }
 

@@ -32,7 +32,7 @@ class PacketMask {
  private:
   template <class Shape>
   void add(const Shape& shape_camera);
-  void add_in_pieces(const simulation::Capsule& capsule_camera);
+  void add_in_pieces(const Capsule& capsule_camera);
 
   PinholeCamera camera_;
   int side_px_;

@@ -9,7 +9,6 @@ namespace depthgrid::lab {
 
 using simulation::Arm;
 using simulation::BodyKind;
-using simulation::Capsule;
 using simulation::PersonState;
 using simulation::Workcell;
 using simulation::WorkcellBody;
@@ -19,9 +18,9 @@ namespace {
 /// Where a capsule lies, seen from one of its length along z that begins at the origin.
 Pose pose_of(const Capsule& capsule) {
   Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), capsule.b_world - capsule.a_world)
-                      .toRotationMatrix();
-  pose.translation() = capsule.a_world;
+  pose.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), capsule.b - capsule.a).toRotationMatrix();
+  pose.translation() = capsule.a;
   return pose;
 }
 
@@ -46,7 +45,7 @@ WorkcellScene::WorkcellScene(simulation::Motion motion, std::uint64_t seed, ArmS
     WorkcellBody body;
     body.name = "link " + std::to_string(link_bodies_.size() + 1);
     body.kind = BodyKind::robot;
-    const Capsule upright{Eigen::Vector3d::Zero(), {0, 0, (link.b_world - link.a_world).norm()}, link.radius_m};
+    const Capsule upright{Eigen::Vector3d::Zero(), {0, 0, (link.b - link.a).norm()}, link.radius_m};
     if (shape == ArmShape::meshes) {
       body.mesh = std::make_shared<simulation::TriangleMesh>(mesh_of(upright, mesh_segments));
     } else {

@@ -71,7 +71,7 @@ void add_people(Scene& scene, double time_s) {
   right.right_fingertips_world = {0.58, -0.235 + 0.13 * wave(time_s, 1.0, 0.8), 1.12 + 0.04 * wave(time_s, 1.2, 0.5)};
 
   for (const simulation::PersonPose& pose : {left, right}) {
-    for (const simulation::Capsule& part : simulation::person(pose)) {
+    for (const Capsule& part : simulation::person(pose)) {
       scene.add(part);
     }
   }
@@ -114,7 +114,7 @@ simulation::Scene workload_scene(double time_s, RobotInView robot) {
   add_table(scene);
   add_people(scene, time_s);
   if (robot == RobotInView::masked) {
-    for (const simulation::Capsule& link : workload_arm(time_s).links) {
+    for (const Capsule& link : workload_arm(time_s).links) {
       scene.add(link, Body::robot);
     }
   }

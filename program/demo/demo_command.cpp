@@ -67,10 +67,10 @@ std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const 
   for (std::size_t k = 0; k < frames.size(); ++k) {
     (void)store.update(k, frames[k]);
   }
-  std::vector<search::Primitive> points;
+  std::vector<Capsule> points;
   points.reserve(demo.control_points_world.size());
   for (const Eigen::Vector3d& p_world : demo.control_points_world) {
-    points.push_back(search::point(p_world));
+    points.push_back(Capsule::point(p_world));
   }
   std::vector<search::Answer> found(points.size());
   search::Search().distances(store.snapshot(), points, found);

@@ -104,7 +104,7 @@ std::string AnswerWriter::line(int frame, std::optional<double> time_s, const fi
   row.frame = frame;
   row.time_s = time_s ? report::micro_text(*time_s) : std::string();
   row.point = point.id;
-  row.position = Texts::of(point.p_m, report::exact_text);
+  row.position = Texts::of(point.capsule.a, report::exact_text);
   row.distance_m = has_distance(nearest) ? report::micro_text_down(nearest.distance_m) : std::string();
   row.state = to_string(nearest.state);
   row.camera = nearest.camera ? rig_.cameras[*nearest.camera].id : std::string();
@@ -115,8 +115,8 @@ std::string AnswerWriter::line(int frame, std::optional<double> time_s, const fi
   row.known_to_m = report::micro_text_down(nearest.known_to_m);
   row.hybrid_direction = Texts::of(T_output_world_.linear() * answer.hybrid_direction_world, report::micro_text);
   row.obstacle_points = answer.obstacle_points;
-  row.radius_m = report::exact_text(point.radius_m);
-  row.end = point.end_m ? Texts::of(*point.end_m, report::exact_text) : Texts{};
+  row.radius_m = report::exact_text(point.capsule.radius_m);
+  row.end = point.has_end ? Texts::of(point.capsule.b, report::exact_text) : Texts{};
   row.on_axis = Texts::of(T_output_world_ * answer.on_axis_world, report::micro_text);
   return format_ == AnswerFormat::csv ? csv(row) : json(row);
 }

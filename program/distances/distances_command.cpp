@@ -182,7 +182,7 @@ void run(const DistancesOptions& options) {
     for (std::size_t k = 0; k < points_now.size(); ++k) {
       output.write(writer.line(number, time_s, points_now[k], answers[k]));
       const bool on_axis = answers[k].on_axis_world.allFinite();
-      picture.push_back({on_axis ? answers[k].on_axis_world : points_world[k].p_m, answers[k].nearest});
+      picture.push_back({on_axis ? answers[k].on_axis_world : points_world[k].capsule.a, answers[k].nearest});
     }
     if (!options.pictures.empty()) {
       save_frame_picture(picture_file(options.pictures, number), rig.name + ", frame " + std::to_string(number), rig,

@@ -27,11 +27,11 @@ class GridFrameEvaluator final : public FrameEvaluator {
     std::vector<PointAnswer> answers;
     answers.reserve(points_world.size());
     for (const files::ControlPoint& point : points_world) {
-      if (point.radius_m > 0 || point.end_m) {
-        fail("control point '", point.id, "' has a ", point.end_m ? "second end" : "radius",
+      if (point.capsule.radius_m > 0 || point.has_end) {
+        fail("control point '", point.id, "' has a ", point.has_end ? "second end" : "radius",
              ", which only --method search knows");
       }
-      const grid::Evaluation answer = evaluator_.evaluate(point.p_m);
+      const grid::Evaluation answer = evaluator_.evaluate(point.capsule.a);
       answers.push_back({answer.nearest, answer.hybrid_direction_world, answer.obstacle_points,
                          Eigen::Vector3d::Constant(Proximity::kNaN)});
     }

@@ -59,10 +59,8 @@ Points control_points(const PointOptions& options) {
 
 std::vector<files::ControlPoint> in_world(std::vector<files::ControlPoint> points, const Pose& T_world_output) {
   for (files::ControlPoint& point : points) {
-    point.p_m = T_world_output * point.p_m;
-    if (point.end_m) {
-      point.end_m = T_world_output * *point.end_m;
-    }
+    point.capsule.a = T_world_output * point.capsule.a;
+    point.capsule.b = T_world_output * point.capsule.b;
   }
   return points;
 }

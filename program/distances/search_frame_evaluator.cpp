@@ -18,10 +18,10 @@ class SearchFrameEvaluator final : public FrameEvaluator {
   }
 
   std::vector<PointAnswer> evaluate(std::span<const files::ControlPoint> points_world) override {
-    std::vector<search::Primitive> primitives;
+    std::vector<Capsule> primitives;
     primitives.reserve(points_world.size());
     for (const files::ControlPoint& point : points_world) {
-      primitives.push_back(primitive_of(point));
+      primitives.push_back(point.capsule);
     }
     std::vector<search::Answer> found(primitives.size());
     const views::Snapshot snapshot = store_.snapshot();
@@ -52,10 +52,6 @@ class SearchFrameEvaluator final : public FrameEvaluator {
 std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const views::Settings& settings,
                                                       const search::Budget& budget, bool hybrid) {
   return std::make_unique<SearchFrameEvaluator>(rig, settings, budget, hybrid);
-}
-
-search::Primitive primitive_of(const files::ControlPoint& point) noexcept {
-  return {point.p_m, point.end_m.value_or(point.p_m), point.radius_m};
 }
 
 }  // namespace depthgrid::program

@@ -13,7 +13,4 @@ namespace depthgrid::program {
 std::unique_ptr<FrameEvaluator> make_search_evaluator(const Rig& rig, const views::Settings& settings,
                                                       const search::Budget& budget, bool hybrid);
 
-/// The primitive that a control point is.
-[[nodiscard]] search::Primitive primitive_of(const files::ControlPoint& point) noexcept;
-
 }  // namespace depthgrid::program

@@ -175,9 +175,9 @@ TEST(RobotParts, BeginWithTheFlangeAndLeaveTheBaseOut) {
   const auto points = nine_control_points(model);
   ASSERT_EQ(points.size(), 9U);
   EXPECT_EQ(points.front().link, model.link_index("lwr_7_link"));
-  for (const RobotPart& point : points) {
-    EXPECT_EQ(point.radius_m, 0);
-    EXPECT_EQ(point.a_link, point.b_link);
+  for (const robot::LinkCapsule& point : points) {
+    EXPECT_EQ(point.capsule.radius_m, 0);
+    EXPECT_EQ(point.capsule.a, point.capsule.b);
   }
   const auto capsules = moving_capsules(model);
   ASSERT_EQ(capsules.size(), 6U);

@@ -31,7 +31,7 @@ struct RobotBeforeWall {
 };
 
 PartAnswer asked(DistanceSource& source, const Eigen::Vector3d& p_world, double now_s) {
-  const search::Primitive part = search::point(p_world);
+  const Capsule part = Capsule::point(p_world);
   PartAnswer answer;
   source.evaluate({&part, 1}, now_s, {&answer, 1});
   return answer;
@@ -117,7 +117,7 @@ TEST(SearchDistances, KeepTheirBudgetHoweverSmallItIs) {
   const Rig rig = test::one_camera();
   const RobotBeforeWall scene;
   const Frame frame = scene.frame(0);
-  const std::array<search::Primitive, 2> parts{search::point(kInRobot), search::point(kInRobot)};
+  const std::array<Capsule, 2> parts{Capsule::point(kInRobot), Capsule::point(kInRobot)};
   for (std::int64_t nodes = 1; nodes <= 5; ++nodes) {
     SearchDistances source(rig, test::search_settings(rig), 2, {.nodes = nodes, .time_s = 0});
     ASSERT_TRUE(source.take({&frame, 1}));
@@ -143,7 +143,7 @@ TEST(SearchDistances, CountAnswersThatABudgetEnded) {
 TEST(SearchDistances, AnswerNoMoreThanTheyHaveRoomFor) {
   const Rig rig = test::one_camera();
   SearchDistances source(rig, test::search_settings(rig), 1);
-  const std::array<search::Primitive, 2> parts{search::point(kInRobot), search::point(kInRobot)};
+  const std::array<Capsule, 2> parts{Capsule::point(kInRobot), Capsule::point(kInRobot)};
   std::array<PartAnswer, 2> answers;
   source.evaluate(parts, 0, answers);
   EXPECT_EQ(answers[1].nearest.state, ProximityState::not_evaluated);

@@ -40,7 +40,7 @@ inline control::JointVector bent() {
   return q;
 }
 
-inline LoopSettings loop_settings(const robot::RobotModel& model, std::vector<RobotPart> parts) {
+inline LoopSettings loop_settings(const robot::RobotModel& model, std::vector<robot::LinkCapsule> parts) {
   LoopSettings settings;
   control::JointLimits& limits = settings.controller.limits;
   limits.highest_rad = control::JointVector::Constant(7, 2.9);

@@ -41,7 +41,7 @@ TEST(WiderVectors, TheLibraryAnswersAProgramForANewerProcessor) {
   }
   search::Search search;
   std::vector<search::Answer> answers(2);
-  const std::vector<search::Primitive> asked{search::point({1.8, 0, 0}), search::sphere({1.8, 0.1, 0}, 0.05)};
+  const std::vector<Capsule> asked{Capsule::point({1.8, 0, 0}), Capsule::sphere({1.8, 0.1, 0}, 0.05)};
   search.distances(store.snapshot(), asked, answers);
   EXPECT_NEAR(answers[0].nearest.distance_m, 0.2, 0.006);
   EXPECT_LE(answers[0].nearest.distance_m, 0.2);

@@ -18,9 +18,9 @@ TEST(ControlPoints, WithAndWithoutHeaderAreTheSame) {
     ASSERT_EQ(points.fixed.size(), 2U) << text;
     EXPECT_TRUE(points.of_frame.empty());
     EXPECT_EQ(points.fixed[0].id, "hand");
-    EXPECT_EQ(points.fixed[0].p_m, Eigen::Vector3d(1, -2.5, 0.3));
+    EXPECT_EQ(points.fixed[0].capsule.a, Eigen::Vector3d(1, -2.5, 0.3));
     EXPECT_EQ(points.fixed[1].id, "elbow");
-    EXPECT_EQ(points.fixed[1].p_m, Eigen::Vector3d(0, 0, 1));
+    EXPECT_EQ(points.fixed[1].capsule.a, Eigen::Vector3d(0, 0, 1));
     EXPECT_EQ(points.at(0).size(), 2U);
     EXPECT_EQ(points.at(77).data(), points.fixed.data());
   }
@@ -34,24 +34,24 @@ TEST(ControlPoints, MovingPointsAreThoseOfTheirFrame) {
   EXPECT_EQ(points.at(8)[1].id, "elbow");
   EXPECT_TRUE(points.at(9).empty());
   ASSERT_EQ(points.at(10).size(), 1U);
-  EXPECT_EQ(points.at(10)[0].p_m.z(), 4);
+  EXPECT_EQ(points.at(10)[0].capsule.a.z(), 4);
 }
 
 TEST(ControlPoints, SpheresAndCapsulesHaveAHeader) {
   const ControlPoints spheres = parse_control_points("id,x,y,z,radius\nhand,1,2,3,0.1\ntip,4,5,6,\n", "points.csv");
   ASSERT_EQ(spheres.fixed.size(), 2U);
-  EXPECT_EQ(spheres.fixed[0].radius_m, 0.1);
-  EXPECT_FALSE(spheres.fixed[0].end_m.has_value());
-  EXPECT_EQ(spheres.fixed[1].radius_m, 0.0);
+  EXPECT_EQ(spheres.fixed[0].capsule.radius_m, 0.1);
+  EXPECT_FALSE(spheres.fixed[0].has_end);
+  EXPECT_EQ(spheres.fixed[1].capsule.radius_m, 0.0);
   const ControlPoints capsules = parse_control_points(
       "Frame,id,x,y,z,radius,x2,y2,z2\n7,arm,1,2,3,0.1,4,5,6\n7,hand,0,0,1,0.05,,,\n", "points.csv");
   ASSERT_EQ(capsules.at(7).size(), 2U);
-  EXPECT_EQ(capsules.at(7)[0].p_m, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(capsules.at(7)[0].radius_m, 0.1);
-  ASSERT_TRUE(capsules.at(7)[0].end_m.has_value());
-  EXPECT_EQ(*capsules.at(7)[0].end_m, Eigen::Vector3d(4, 5, 6));
-  EXPECT_EQ(capsules.at(7)[1].radius_m, 0.05);
-  EXPECT_FALSE(capsules.at(7)[1].end_m.has_value());
+  EXPECT_EQ(capsules.at(7)[0].capsule.a, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(capsules.at(7)[0].capsule.radius_m, 0.1);
+  ASSERT_TRUE(capsules.at(7)[0].has_end);
+  EXPECT_EQ(capsules.at(7)[0].capsule.b, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(capsules.at(7)[1].capsule.radius_m, 0.05);
+  EXPECT_FALSE(capsules.at(7)[1].has_end);
 }
 
 TEST(ControlPoints, LoadIsParseOfTheFile) {
@@ -62,12 +62,12 @@ TEST(ControlPoints, LoadIsParseOfTheFile) {
 TEST(ControlPoints, OnePointFromTheCommandLine) {
   const ControlPoint point = parse_control_point(" 0.5, -1 ,2e0", "p0");
   EXPECT_EQ(point.id, "p0");
-  EXPECT_EQ(point.p_m, Eigen::Vector3d(0.5, -1, 2));
-  EXPECT_EQ(point.radius_m, 0.0);
-  EXPECT_EQ(parse_control_point("0,0,1,0.25", "p0").radius_m, 0.25);
+  EXPECT_EQ(point.capsule.a, Eigen::Vector3d(0.5, -1, 2));
+  EXPECT_EQ(point.capsule.radius_m, 0.0);
+  EXPECT_EQ(parse_control_point("0,0,1,0.25", "p0").capsule.radius_m, 0.25);
   const ControlPoint capsule = parse_control_point("0,0,1,0.25,3,4,5", "p0");
-  EXPECT_EQ(capsule.radius_m, 0.25);
-  EXPECT_EQ(capsule.end_m.value(), Eigen::Vector3d(3, 4, 5));
+  EXPECT_EQ(capsule.capsule.radius_m, 0.25);
+  EXPECT_EQ(capsule.capsule.b, Eigen::Vector3d(3, 4, 5));
 }
 
 struct Broken {

@@ -29,8 +29,8 @@ TEST(Workload, ControlPointsAreNearPeopleAndThingsAtAllTimes) {
     const simulation::Arm arm = workload_arm(time_s);
     for (std::size_t i = 2; i < arm.links.size(); ++i) {  // the column stands on the table
       for (int k = 0; k <= 20; ++k) {
-        const simulation::Capsule& link = arm.links[i];
-        const Eigen::Vector3d p = link.a_world + (link.b_world - link.a_world) * k / 20;
+        const Capsule& link = arm.links[i];
+        const Eigen::Vector3d p = link.a + (link.b - link.a) * k / 20;
         clearance_m = std::min(clearance_m, scene.distance(p).distance_m - link.radius_m);
       }
     }

@@ -87,7 +87,7 @@ const char* to_string(Fault fault) {
   return kNames.at(static_cast<std::size_t>(fault));
 }
 
-AnswerCheck::Soundness AnswerCheck::soundness(const search::Primitive& asked, const search::Answer& answer) const {
+AnswerCheck::Soundness AnswerCheck::soundness(const Capsule& asked, const search::Answer& answer) const {
   Soundness result;
   const double answer_m = answer.nearest.distance_m;
   if (!(answer_m > 0)) {
@@ -110,7 +110,7 @@ AnswerCheck::Soundness AnswerCheck::soundness(const search::Primitive& asked, co
   return result;
 }
 
-std::optional<Finding> AnswerCheck::form(const search::Primitive& asked, const search::Answer& answer) const {
+std::optional<Finding> AnswerCheck::form(const Capsule& asked, const search::Answer& answer) const {
   const Primitive primitive = to_reference(asked);
   if (const auto what = implausible(primitive, answer)) {
     return Finding{Fault::implausible, *what};

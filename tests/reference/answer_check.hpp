@@ -34,7 +34,7 @@ class AnswerCheck {
   explicit AnswerCheck(const SearchProblem& problem) : problem_(&problem), oracle_(problem.oracle.get()) {}
 
   /// Everything but soundness: form, state and, where no budget stopped it, tightness.
-  [[nodiscard]] std::optional<Finding> form(const search::Primitive& primitive, const search::Answer& answer) const;
+  [[nodiscard]] std::optional<Finding> form(const Capsule& primitive, const search::Answer& answer) const;
 
   struct Soundness {
     std::optional<Finding> finding;
@@ -42,7 +42,7 @@ class AnswerCheck {
     std::int64_t boxes = 0;  ///< that the oracle looked at
   };
   /// No point of O is nearer than the answer.
-  [[nodiscard]] Soundness soundness(const search::Primitive& primitive, const search::Answer& answer) const;
+  [[nodiscard]] Soundness soundness(const Capsule& primitive, const search::Answer& answer) const;
 
  private:
   [[nodiscard]] std::optional<std::string> implausible(const Primitive& primitive, const search::Answer& answer) const;

@@ -42,7 +42,7 @@ void add_obstacles(Random& random, bool thin, simulation::Scene& scene) {
       scene.add(simulation::Sphere{centre, random.uniform(0.02, 0.25)});
     } else {
       const double radius_m = thin ? random.uniform(0.005, 0.02) : random.uniform(0.005, 0.1);
-      scene.add(simulation::Capsule{centre, centre + random.in_cube(0.3), radius_m});
+      scene.add(Capsule{centre, centre + random.in_cube(0.3), radius_m});
     }
   }
 }
@@ -54,7 +54,7 @@ Vector3d add_robot(Random& random, simulation::Scene& scene) {
   Vector3d middle = joint;
   for (int i = 0; i < links; ++i) {
     const Vector3d next = joint + 0.35 * random.direction();
-    scene.add(simulation::Capsule{joint, next, random.uniform(0.03, 0.08)}, simulation::Body::robot);
+    scene.add(Capsule{joint, next, random.uniform(0.03, 0.08)}, simulation::Body::robot);
     middle = i == 0 ? (0.5 * (joint + next)).eval() : middle;
     joint = next;
   }

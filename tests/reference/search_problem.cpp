@@ -39,16 +39,16 @@ views::BoxSpace draw_box(Random& random) {
   return {centre - half, centre + half};
 }
 
-search::Primitive draw_primitive(Random& random, Shape shape, const Vector3d& centre) {
+Capsule draw_primitive(Random& random, Shape shape, const Vector3d& centre) {
   const Vector3d along = random.uniform(0.02, 0.3) * random.direction();
   const double radius_m = random.chance(0.1) ? 0.0 : random.uniform(0.005, 0.12);
   switch (shape) {
     case Shape::point:
-      return search::point(centre);
+      return Capsule::point(centre);
     case Shape::sphere:
-      return search::sphere(centre, radius_m);
+      return Capsule::sphere(centre, radius_m);
     default:
-      return search::capsule(centre - along, centre + along, radius_m);
+      return Capsule{centre - along, centre + along, radius_m};
   }
 }
 
@@ -60,7 +60,7 @@ void draw_primitives(Random& random, int count, SearchProblem& problem) {
     const bool anywhere = random.chance(0.03);
     const bool buried = random.chance(0.15);
     const double place = random.uniform(0, 1);
-    search::Primitive primitive{};
+    Capsule primitive{};
     for (int attempt = 0; attempt < 40; ++attempt) {
       Vector3d centre = random.in_cube(place < 0.75 ? 0.7 : 1.4);
       if (place > 0.95) {

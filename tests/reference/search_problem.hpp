@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "depthgrid/search/primitive.hpp"
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/views/settings.hpp"
 #include "reference/random_problem.hpp"
 #include "reference/reference.hpp"
@@ -23,7 +23,7 @@ struct SearchProblem {
   bool ideal = false;         ///< no margins, no errors, one exposure
   Problem problem;
   std::unique_ptr<Reference> oracle;
-  std::vector<search::Primitive> primitives;
+  std::vector<Capsule> primitives;
 
   SearchProblem() = default;
   SearchProblem(SearchProblem&&) = default;
@@ -37,8 +37,6 @@ struct SearchProblem {
 /// With that many queries; the first ones are the same for every count.
 SearchProblem make_search_problem(const RandomOptions& options, int queries);
 
-[[nodiscard]] inline Primitive to_reference(const search::Primitive& primitive) {
-  return {primitive.a_world, primitive.b_world, primitive.radius_m};
-}
+[[nodiscard]] inline Primitive to_reference(const Capsule& capsule) { return {capsule.a, capsule.b, capsule.radius_m}; }
 
 }  // namespace depthgrid::reference

@@ -56,7 +56,7 @@ struct Images {
          const Pose& T_world_camera) {
     simulation::Scene arm;
     for (const Capsule& c : robot) {
-      arm.add(simulation::Capsule{c.a, c.b, c.radius_m}, simulation::Body::robot);
+      arm.add(Capsule{c.a, c.b, c.radius_m}, simulation::Body::robot);
     }
     obstacle_m = obstacles.render(camera, T_world_camera).depth_m;
     robot_m = arm.render(camera, T_world_camera).depth_m;
@@ -98,7 +98,7 @@ bool add_hand(simulation::Scene& scene, const Images& robot_only, const PinholeC
       constexpr double kRadius = 0.03;
       const double depth_m = robot_only.robot_m.at(u, v) - gap_m - kRadius;
       centre_world = point_of(camera, T_world_camera, u, v, depth_m);
-      scene.add(simulation::Capsule{centre_world, centre_world + 0.08 * random.unit(), kRadius});
+      scene.add(Capsule{centre_world, centre_world + 0.08 * random.unit(), kRadius});
       return depth_m > 0.2;
     }
   }
@@ -126,7 +126,7 @@ TEST(RemovalScenes, TakesTheRobotAndNothingBeyondThePadding) {
     }
     for (int k = random.integer(0, 3); k > 0; --k) {  // anywhere
       const Vector3d a = Vector3d(0, 0, 0.4) + random.in_cube(1);
-      scene.add(simulation::Capsule{a, a + random.in_cube(0.5), random.uniform(0.02, 0.2)});
+      scene.add(Capsule{a, a + random.in_cube(0.5), random.uniform(0.02, 0.2)});
     }
     const Images images(scene, robot, camera, T_world_camera);
     const double padding_m = random.uniform(0.0, 0.08);

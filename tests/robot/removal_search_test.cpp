@@ -43,7 +43,7 @@ TEST(RemovalSearch, LinksAreNoObstacleAndAHandIs) {
     simulation::Scene scene;
     scene.add(simulation::Plane{Vector3d::UnitX(), -2.0});
     for (const Capsule& c : placed) {
-      scene.add(simulation::Capsule{c.a, c.b, c.radius_m}, simulation::Body::robot);
+      scene.add(Capsule{c.a, c.b, c.radius_m}, simulation::Body::robot);
     }
     // Its surface is 0.1 m from that of the wrist, towards the camera.
     const Capsule& wrist = placed[6];
@@ -66,11 +66,11 @@ TEST(RemovalSearch, LinksAreNoObstacleAndAHandIs) {
     RobotRemoval removal(camera.intrinsics, links, {0.02, true});
     Frame frame;
     frame.depth = {view.depth_m.data(), DepthFormat::float32_metres, 320, 240, 320 * sizeof(float), 1.0};
-    std::vector<search::Primitive> primitives;
+    std::vector<Capsule> primitives;
     bool wrist_asked = false;
     for (std::size_t k = 2; k < placed.size(); ++k) {
       if (std::max(placed[k].a.cwiseAbs().head<2>().maxCoeff(), placed[k].b.cwiseAbs().head<2>().maxCoeff()) < 0.5) {
-        primitives.push_back(search::capsule(placed[k].a, placed[k].b, placed[k].radius_m));
+        primitives.push_back(Capsule{placed[k].a, placed[k].b, placed[k].radius_m});
         wrist_asked = wrist_asked || k == 6;
       }
     }

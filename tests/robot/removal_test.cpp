@@ -167,7 +167,7 @@ TEST(Removal, AgreesWithTheSimulator) {
     std::vector<Capsule> placed(view.capsules.size());
     place(view.capsules, view.T_world_link, placed);
     for (const Capsule& c : placed) {
-      scene.add(simulation::Capsule{c.a, c.b, c.radius_m}, simulation::Body::robot);
+      scene.add(Capsule{c.a, c.b, c.radius_m}, simulation::Body::robot);
     }
     const simulation::View slow = scene.render(view.camera, view.T_world_camera, view.settings.padding_m);
     RobotRemoval removal(view.camera, view.capsules, view.settings);
@@ -206,7 +206,7 @@ TEST(Removal, WholePixelsHoldWhatAnyRayOfThePixelMeets) {
                                    deproject(view.camera, {u + random.uniform(0, 1), v + random.uniform(0, 1), 1.0})};
         double depth_m = 1e9;
         for (const Capsule& c : capsules) {
-          const simulation::Interval z = intersect(simulation::Capsule{c.a, c.b, c.radius_m}, ray);
+          const simulation::Interval z = intersect(Capsule{c.a, c.b, c.radius_m}, ray);
           depth_m = !z.empty() && z.entry > 0 ? std::min(depth_m, z.entry) : depth_m;
         }
         readings.push_back(depth_m < 1e8 ? static_cast<float>(depth_m) : 0.0F);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "depthgrid/robot/capsule.hpp"
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/simulation/shapes.hpp"
 
 namespace depthgrid::robot {
@@ -27,7 +27,7 @@ struct TwinRay {
     const simulation::Line ray{Eigen::Vector3d::Zero(), deproject(camera, {u + 0.5, v + 0.5, 1.0})};
     std::vector<TwinPart> all;
     for (std::size_t i = 0; i < capsules_camera.size(); ++i) {
-      const simulation::Capsule body{capsules_camera[i].a, capsules_camera[i].b, capsules_camera[i].radius_m};
+      const Capsule body{capsules_camera[i].a, capsules_camera[i].b, capsules_camera[i].radius_m};
       const simulation::Interval padded = intersect(simulation::grown(body, padding_m[i]), ray);
       if (!padded.empty() && padded.exit > 0) {
         all.push_back({padded.entry, padded.exit});

@@ -29,14 +29,14 @@ TEST(NoAllocation, FromImageToAnswer) {
     }
     views::ViewStore store(setup.rig, setup.settings);
     Search search;
-    std::vector<Primitive> primitives;
+    std::vector<Capsule> primitives;
     for (const Eigen::Vector3d& p_world : problem.points_world) {
-      primitives.push_back(point(p_world));
-      primitives.push_back(sphere(p_world, 0.05));
-      primitives.push_back(capsule(p_world, p_world + Eigen::Vector3d(0.1, 0.2, 0), 0.05));
+      primitives.push_back(Capsule::point(p_world));
+      primitives.push_back(Capsule::sphere(p_world, 0.05));
+      primitives.push_back(Capsule{p_world, p_world + Eigen::Vector3d(0.1, 0.2, 0), 0.05});
     }
-    primitives.push_back(point(Eigen::Vector3d::Constant(100)));
-    primitives.push_back(point(Eigen::Vector3d::Constant(Proximity::kNaN)));
+    primitives.push_back(Capsule::point(Eigen::Vector3d::Constant(100)));
+    primitives.push_back(Capsule::point(Eigen::Vector3d::Constant(Proximity::kNaN)));
     std::vector<Answer> answers(primitives.size());
     const Frame unusable;
     Count count;

@@ -20,7 +20,8 @@ TEST(Budget, OfMoreNodesGivesALargerBoundUpToTheWholeAnswer) {
     const SearchSetup setup = make_setup(problem, random.chance(0.5) ? SpaceKind::box : SpaceKind::frustum, true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = random.chance(0.5) ? point(p_world) : sphere(p_world, random.uniform(0, 0.05));
+      const Capsule primitive =
+          random.chance(0.5) ? Capsule::point(p_world) : Capsule::sphere(p_world, random.uniform(0, 0.05));
       const Proximity whole = asker.distance(primitive).nearest;
       EXPECT_FALSE(whole.budget);
       double before_m = 0;
@@ -51,9 +52,9 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
   for_random_problems(60, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, SpaceKind::box, true);
     Asker asker(setup);
-    std::vector<Primitive> primitives;
+    std::vector<Capsule> primitives;
     for (int i = 0; i < 9; ++i) {
-      primitives.push_back(sphere(random.in_cube(0.6), random.uniform(0, 0.05)));
+      primitives.push_back(Capsule::sphere(random.in_cube(0.6), random.uniform(0, 0.05)));
     }
     const std::vector<Answer> whole = asker.distances(primitives);
     std::vector<Answer> part(primitives.size());
@@ -82,9 +83,9 @@ TEST(Budget, OfTimeGivesALowerBound) {
   for_random_problems(60, {}, [&](const RandomProblem& problem, Random&) {
     Asker asker(make_setup(problem, SpaceKind::box, true));
     for (const Vector3d& p_world : problem.points_world) {
-      const Proximity whole = asker.distance(point(p_world)).nearest;
+      const Proximity whole = asker.distance(Capsule::point(p_world)).nearest;
       for (const double time_s : {1e-12, 1e-6, 1e-5, 1e-4}) {
-        const Proximity part = asker.distance(point(p_world), {0, time_s}).nearest;
+        const Proximity part = asker.distance(Capsule::point(p_world), {0, time_s}).nearest;
         ASSERT_FALSE(std::isnan(part.distance_m)) << time_s << " s";
         EXPECT_LE(part.distance_m, whole.distance_m) << time_s << " s";
         EXPECT_TRUE(part.budget || part.distance_m == whole.distance_m) << time_s << " s";
@@ -98,10 +99,10 @@ TEST(Budget, OfTimeGivesALowerBound) {
 TEST(Budget, OfTimeThatIsOverOpensNothingHoweverManyPrimitivesThereAre) {
   for_random_problems(20, {}, [](const RandomProblem& problem, Random&) {
     Asker asker(make_setup(problem, SpaceKind::box, true));
-    std::vector<Primitive> primitives;
+    std::vector<Capsule> primitives;
     for (int copy = 0; copy < 20; ++copy) {
       for (const Vector3d& p_world : problem.points_world) {
-        primitives.push_back(point(p_world));
+        primitives.push_back(Capsule::point(p_world));
       }
     }
     std::vector<Answer> answers(primitives.size());

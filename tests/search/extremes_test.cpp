@@ -49,7 +49,7 @@ struct OneCamera {
 /// Both ends of what the oracle allows.
 void expect_within_oracle(const SearchSetup& setup, const Vector3d& p_world) {
   const double rho_m = setup.settings.rho_m;
-  const double answer_m = Asker(setup).distance(point(p_world)).nearest.distance_m;
+  const double answer_m = Asker(setup).distance(Capsule::point(p_world)).nearest.distance_m;
   const Interval exact = Reference(oracle_problem(setup)).distance(p_world);
   const Interval grown = Reference(oracle_problem(setup, setup.settings.resolution_m)).distance(p_world);
   EXPECT_LE(answer_m, exact.hi_m.value_or(rho_m)) << "point " << p_world.transpose();
@@ -59,7 +59,7 @@ void expect_within_oracle(const SearchSetup& setup, const Vector3d& p_world) {
 TEST(Outside, IsAtDistanceZeroWhereItIsAnObstacle) {
   const OneCamera one;
   for (const Vector3d& p : {Vector3d(3.001, 0, 1), Vector3d(0, 0, 3.5), Vector3d(1e6, 0, 0), Vector3d(0, -1e4, 1e4)}) {
-    const Answer answer = Asker(one.setup).distance(point(p));
+    const Answer answer = Asker(one.setup).distance(Capsule::point(p));
     EXPECT_EQ(answer.nearest.distance_m, 0) << p.transpose();
     EXPECT_EQ(answer.nearest.state, ProximityState::outside) << p.transpose();
   }
@@ -69,7 +69,7 @@ TEST(Outside, HasNoDistanceWhereItIsIgnored) {
   OneCamera one;
   one.setup.settings.policies.outside = views::Policy::ignored;
   for (const Vector3d& p : {Vector3d(3.001, 0, 1), Vector3d(0, 0, 3.5), Vector3d(1e6, 0, 0), Vector3d(0, -1e4, 1e4)}) {
-    const Answer answer = Asker(one.setup).distance(point(p));
+    const Answer answer = Asker(one.setup).distance(Capsule::point(p));
     EXPECT_TRUE(std::isnan(answer.nearest.distance_m)) << p.transpose();
     EXPECT_EQ(answer.nearest.state, ProximityState::outside) << p.transpose();
   }
@@ -82,24 +82,25 @@ TEST(Outside, BeginsAtKnownToWhereItIsIgnored) {
   Asker asker(one.setup);
   for (const Vector3d& p : {Vector3d(0, 0, 2.75), Vector3d(0, 0, 1.0), Vector3d(0.1, 0.1, 2.999)}) {
     const double border_m = std::min({3 - p.z(), 3 - std::abs(p.x()), 3 - std::abs(p.y())});
-    EXPECT_NEAR(asker.distance(point(p)).nearest.known_to_m, border_m, 1e-5) << p.transpose();
-    EXPECT_LE(asker.distance(point(p)).nearest.known_to_m, border_m) << p.transpose();
+    EXPECT_NEAR(asker.distance(Capsule::point(p)).nearest.known_to_m, border_m, 1e-5) << p.transpose();
+    EXPECT_LE(asker.distance(Capsule::point(p)).nearest.known_to_m, border_m) << p.transpose();
   }
   one.setup.settings.policies.outside = views::Policy::obstacle;
-  EXPECT_TRUE(std::isnan(Asker(one.setup).distance(point({0, 0, 1})).nearest.known_to_m)) << "nothing is ignored";
+  EXPECT_TRUE(std::isnan(Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.known_to_m))
+      << "nothing is ignored";
 }
 
 TEST(Cameras, SeeNothingBehindThem) {
   OneCamera one;
   for (const Vector3d& p : {Vector3d(0, 0, -1), Vector3d(1, 1, -0.001), Vector3d(-2, 0, -2.5)}) {
-    const Answer answer = Asker(one.setup).distance(point(p));
+    const Answer answer = Asker(one.setup).distance(Capsule::point(p));
     EXPECT_EQ(answer.nearest.distance_m, 0) << p.transpose();
     EXPECT_EQ(answer.nearest.state, ProximityState::unobserved) << p.transpose();
   }
   one.setup.settings.policies.unobserved = views::Policy::ignored;
   one.setup.settings.policies.outside = views::Policy::ignored;
   for (const Vector3d& p : {Vector3d(0, 0, -1), Vector3d(-2, 0, -2.5)}) {
-    const Answer answer = Asker(one.setup).distance(point(p));
+    const Answer answer = Asker(one.setup).distance(Capsule::point(p));
     EXPECT_EQ(answer.nearest.state, ProximityState::beyond_rho) << p.transpose();
     EXPECT_EQ(answer.nearest.distance_m, one.setup.settings.rho_m) << p.transpose();
   }
@@ -107,7 +108,7 @@ TEST(Cameras, SeeNothingBehindThem) {
 
 TEST(Cameras, SeeNothingInTheirOwnPlace) {
   const OneCamera one;
-  const Answer answer = Asker(one.setup).distance(point(Vector3d::Zero()));
+  const Answer answer = Asker(one.setup).distance(Capsule::point(Vector3d::Zero()));
   EXPECT_EQ(answer.nearest.distance_m, 0);
   EXPECT_TRUE(answer.nearest.state == ProximityState::unobserved || answer.nearest.state == ProximityState::unmeasured);
 }
@@ -134,7 +135,7 @@ TEST(Cameras, DoNotTakeTheRobotInTheirBlindZoneForAnObstacle) {
     SCOPED_TRACE(z_m);
     expect_within_oracle(one.setup, {0, 0, z_m});
   }
-  EXPECT_GT(Asker(one.setup).distance(point({0, 0, 0.2})).nearest.distance_m, 0.08);
+  EXPECT_GT(Asker(one.setup).distance(Capsule::point({0, 0, 0.2})).nearest.distance_m, 0.08);
 }
 
 TEST(Cameras, DoNotTakeTheRobotInTheirBlindZoneForAnObstacleInFreeSpaceEither) {
@@ -148,7 +149,7 @@ TEST(Cameras, DoNotTakeTheRobotInTheirBlindZoneForAnObstacleInFreeSpaceEither) {
       SCOPED_TRACE(testing::Message() << "link to " << exit_m << " m, point at " << z_m << " m");
       expect_within_oracle(one.setup, {0, 0, z_m});
     }
-    EXPECT_GT(Asker(one.setup).distance(point({0, 0, 0.15})).nearest.distance_m, 0.045);
+    EXPECT_GT(Asker(one.setup).distance(Capsule::point({0, 0, 0.15})).nearest.distance_m, 0.045);
   }
 }
 
@@ -163,7 +164,7 @@ TEST(Cameras, CanBeSeenFreeByAnother) {
   one.setup.settings.rho_m = 1.5;
   for (const Vector3d& p : {Vector3d(0, 0, 0), Vector3d(0, 0, 1e-7), Vector3d(0, 0, -1e-12), Vector3d(0, 0, 0.3)}) {
     expect_within_oracle(one.setup, p);
-    EXPECT_GT(Asker(one.setup).distance(point(p)).nearest.distance_m, 0.5) << p.transpose();
+    EXPECT_GT(Asker(one.setup).distance(Capsule::point(p)).nearest.distance_m, 0.5) << p.transpose();
   }
 }
 
@@ -174,8 +175,8 @@ TEST(Snapshots, WithoutAnyFrameFreeNothing) {
   EXPECT_TRUE(snapshot.stale());
   EXPECT_TRUE(std::isnan(snapshot.reference_time_s()));
   Search search;
-  const std::vector<Primitive> primitives{point({0, 0, 1}), point({0, 0, -1}), point({0, 0, 0.1}),
-                                          point({2.5, 0, 0.5})};
+  const std::vector<Capsule> primitives{Capsule::point({0, 0, 1}), Capsule::point({0, 0, -1}),
+                                        Capsule::point({0, 0, 0.1}), Capsule::point({2.5, 0, 0.5})};
   std::vector<Answer> answers(primitives.size());
   search.distances(snapshot, primitives, answers);
   const std::vector<ProximityState> states{ProximityState::unmeasured, ProximityState::unobserved,
@@ -194,7 +195,7 @@ TEST(Snapshots, WithoutAnyFrameLeaveTheIgnoredOut) {
   const views::ViewStore store(one.setup.rig, one.setup.settings);
   Search search;
   const auto ask = [&](const Vector3d& p) {
-    const Primitive primitive = point(p);
+    const Capsule primitive = Capsule::point(p);
     Answer answer;
     search.distances(store.snapshot(), {&primitive, 1}, {&answer, 1});
     return answer.nearest;
@@ -219,7 +220,7 @@ TEST(Snapshots, AreStaleWithoutATimeOrWithAnOldFrame) {
   const auto stale = [&](double first_s, double second_s) {
     one.setup.frames[0].time_s = first_s;
     one.setup.frames[1].time_s = second_s;
-    return Asker(one.setup).distance(point({0, 0, 1})).nearest.stale;
+    return Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.stale;
   };
   EXPECT_FALSE(stale(10, 10));
   EXPECT_FALSE(stale(10, 10.09));
@@ -235,10 +236,11 @@ TEST(Snapshots, FreeNothingThroughACameraWithoutATime) {
   for (const double time_s : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
     OneCamera one;
     one.setup.frames[0].time_s = time_s;
-    EXPECT_GT(Asker(one.setup).distance(point({0, 0, 1})).nearest.distance_m, 0) << time_s << " s, nothing moves";
+    EXPECT_GT(Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.distance_m, 0)
+        << time_s << " s, nothing moves";
     one.setup.settings.v_max_m_s = 1;
-    EXPECT_EQ(Asker(one.setup).distance(point({0, 0, 1})).nearest.distance_m, 0) << time_s << " s";
-    EXPECT_TRUE(Asker(one.setup).distance(point({0, 0, 1})).nearest.stale) << time_s << " s";
+    EXPECT_EQ(Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.distance_m, 0) << time_s << " s";
+    EXPECT_TRUE(Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.stale) << time_s << " s";
     // Beside a camera whose time is known.
     RigCamera other = one.setup.rig.cameras[0];
     other.id = "turned away";
@@ -247,8 +249,8 @@ TEST(Snapshots, FreeNothingThroughACameraWithoutATime) {
     one.setup.frames.push_back(one.setup.frames[0]);
     one.setup.frames[1].time_s = 10;
     one.setup.settings.margins.push_back(one.setup.settings.margins[0]);
-    EXPECT_EQ(Asker(one.setup).distance(point({0, 0, 1})).nearest.distance_m, 0) << time_s << " s and 10 s";
-    EXPECT_TRUE(Asker(one.setup).distance(point({0, 0, 1})).nearest.stale) << time_s << " s and 10 s";
+    EXPECT_EQ(Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.distance_m, 0) << time_s << " s and 10 s";
+    EXPECT_TRUE(Asker(one.setup).distance(Capsule::point({0, 0, 1})).nearest.stale) << time_s << " s and 10 s";
   }
 }
 
@@ -265,7 +267,7 @@ TEST(Snapshots, KnowWhereACameraWithoutAFrameStands) {
   views::ViewStore store(one.setup.rig, one.setup.settings);
   Search search;
   const auto distance_m = [&](const Vector3d& p_world) {
-    const Primitive primitive = point(p_world);
+    const Capsule primitive = Capsule::point(p_world);
     Answer answer;
     search.distances(store.snapshot(), {&primitive, 1}, {&answer, 1});
     return answer.nearest.distance_m;
@@ -301,7 +303,7 @@ TEST(Extremes, FarFromTheOriginNothingChanges) {
       }
       Asker asker(far);
       for (const Vector3d& p : problem.points_world) {
-        const double answer_m = asker.distance(point(p + shift)).nearest.distance_m;
+        const double answer_m = asker.distance(Capsule::point(p + shift)).nearest.distance_m;
         EXPECT_LE(answer_m, exact.distance(p).hi_m.value_or(near.settings.rho_m)) << far_m << " m, " << p.transpose();
         EXPECT_GE(answer_m, grown.distance(p).lo_m - kRounding - kDoubleRounding) << far_m << " m, " << p.transpose();
       }
@@ -319,10 +321,10 @@ TEST(Extremes, RhoMayReachBeyondEverything) {
     Asker asker(one.setup);
     // The slab between the wall and W's border, and the blind zone before 0.3 m is no part of what the camera covers.
     const double shortfall_m = one.setup.settings.resolution_m + kRounding;
-    const double wall_m = asker.distance(point({0, 0, 1})).nearest.distance_m;
+    const double wall_m = asker.distance(Capsule::point({0, 0, 1})).nearest.distance_m;
     EXPECT_LE(wall_m, static_cast<double>(2.9F) - 1);
     EXPECT_GE(wall_m, static_cast<double>(2.9F) - 1 - shortfall_m);
-    const double behind_m = asker.distance(point({0, 0, -2})).nearest.distance_m;
+    const double behind_m = asker.distance(Capsule::point({0, 0, -2})).nearest.distance_m;
     EXPECT_LE(behind_m, std::min(rho_m, static_cast<double>(2.9F) + 2));
     EXPECT_GE(behind_m, std::min(rho_m, static_cast<double>(2.9F) + 2 - shortfall_m));
   }
@@ -332,9 +334,9 @@ TEST(Extremes, RhoMayBeAsSmallAsTheResolution) {
   OneCamera one;
   one.setup.settings.rho_m = one.setup.settings.resolution_m = 0.0005;
   Asker asker(one.setup);
-  EXPECT_EQ(asker.distance(point({0, 0, 1})).nearest.distance_m, 0.0005);
-  EXPECT_EQ(asker.distance(point({0, 0, 1})).nearest.state, ProximityState::beyond_rho);
-  EXPECT_LE(asker.distance(point({0, 0, 1.9998})).nearest.distance_m, 0.0002);
+  EXPECT_EQ(asker.distance(Capsule::point({0, 0, 1})).nearest.distance_m, 0.0005);
+  EXPECT_EQ(asker.distance(Capsule::point({0, 0, 1})).nearest.state, ProximityState::beyond_rho);
+  EXPECT_LE(asker.distance(Capsule::point({0, 0, 1.9998})).nearest.distance_m, 0.0002);
 }
 
 TEST(Extremes, TheResolutionMayBeFineOrCoarse) {
@@ -364,10 +366,10 @@ TEST(Extremes, AnImageMayHaveOnePixel) {
                               Vector3d(0.3, 0.2, 0.9), Vector3d(2, 0, 1)}) {
       expect_within_oracle(one.setup, p);
     }
-    EXPECT_GT(Asker(one.setup).distance(point({0, 0, 1.5})).nearest.distance_m, 0.3);
+    EXPECT_GT(Asker(one.setup).distance(Capsule::point({0, 0, 1.5})).nearest.distance_m, 0.3);
     // With a reach of one pixel every pixel is at the border, so nothing is free.
     one.setup.settings.margins[0].sensor.lateral_px = 1;
-    EXPECT_EQ(Asker(one.setup).distance(point({0, 0, 1.5})).nearest.distance_m, 0);
+    EXPECT_EQ(Asker(one.setup).distance(Capsule::point({0, 0, 1.5})).nearest.distance_m, 0);
   }
 }
 
@@ -426,7 +428,7 @@ TEST(Extremes, ErrorsOfOrientationGrowWithinEveryCube) {
       const double z_m = 0.5 * (free_m + obstacle_m);
       (z_m + rate * Vector3d(p.x(), p.y(), z_m).norm() < 2 ? free_m : obstacle_m) = z_m;
     }
-    const double answer_m = Asker(one.setup).distance(point(p)).nearest.distance_m;
+    const double answer_m = Asker(one.setup).distance(Capsule::point(p)).nearest.distance_m;
     EXPECT_LE(answer_m, obstacle_m - p.z()) << p.transpose() << " with " << rate << " rad";
     EXPECT_GT(answer_m, 0) << p.transpose() << " with " << rate << " rad";
   }
@@ -443,7 +445,7 @@ TEST(Extremes, AnyErrorOfOrientationFreesNothingButHidesNothing) {
   setup.settings.margins.push_back(setup.settings.margins[0]);
   for (const double rotation_rad : {0.01, 3.0, 1e6, 1e12, 1e14, 1e16, 1e100}) {
     setup.settings.margins[1].rotation_rad = rotation_rad;
-    const double answer_m = Asker(setup).distance(point({0, 0, 1.8})).nearest.distance_m;
+    const double answer_m = Asker(setup).distance(Capsule::point({0, 0, 1.8})).nearest.distance_m;
     EXPECT_LE(answer_m, 0.2) << rotation_rad;
     EXPECT_GE(answer_m, 0.2 - 2 * setup.settings.resolution_m) << rotation_rad;
   }
@@ -475,7 +477,7 @@ TEST(Extremes, PixelsMayBeSmallerThanTheResolution) {
       for (const PixelFrustum& thing : things) {
         distance_m = std::min(distance_m, std::sqrt(squared_distance(thing, p)));
       }
-      const double answer_m = asker.distance(point(p)).nearest.distance_m;
+      const double answer_m = asker.distance(Capsule::point(p)).nearest.distance_m;
       EXPECT_LE(answer_m, distance_m) << p.transpose();
       EXPECT_GE(answer_m, distance_m - one.setup.settings.resolution_m - kRounding - kDoubleRounding) << p.transpose();
       told += answer_m > 0 && distance_m < 2 - p.z() ? 1 : 0;
@@ -486,7 +488,7 @@ TEST(Extremes, PixelsMayBeSmallerThanTheResolution) {
 
 TEST(Extremes, AnImageWithoutMeasurementsFreesNothing) {
   OneCamera one(0.0F);
-  const Answer answer = Asker(one.setup).distance(point({0, 0, 1}));
+  const Answer answer = Asker(one.setup).distance(Capsule::point({0, 0, 1}));
   EXPECT_EQ(answer.nearest.distance_m, 0);
   EXPECT_EQ(answer.nearest.state, ProximityState::unmeasured);
 }

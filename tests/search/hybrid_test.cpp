@@ -57,9 +57,9 @@ TEST(HybridDirection, IsOfUnitLengthAndLedByTheNearest) {
     setup.settings.direction_blend = random.chance(0.3) ? 1.0 : random.uniform(0, 1);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = random.chance(0.5)
-                                      ? sphere(p_world, random.uniform(0, 0.05))
-                                      : capsule(p_world, p_world + random.in_cube(0.1), random.uniform(0, 0.05));
+      const Capsule primitive = random.chance(0.5)
+                                    ? Capsule::sphere(p_world, random.uniform(0, 0.05))
+                                    : Capsule{p_world, p_world + random.in_cube(0.1), random.uniform(0, 0.05)};
       const Answer answer = asker.hybrid(primitive);
       const Proximity alone = asker.distance(primitive).nearest;
       EXPECT_EQ(answer.nearest.distance_m, alone.distance_m);
@@ -87,7 +87,7 @@ TEST(HybridDirection, IsTheNearestDirectionWithoutBlend) {
     setup.settings.direction_blend = 0;
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Answer answer = asker.hybrid(point(p_world));
+      const Answer answer = asker.hybrid(Capsule::point(p_world));
       if (answer.nearest.distance_m > 0 && answer.nearest.distance_m < setup.settings.rho_m) {
         EXPECT_LT((answer.hybrid_direction_world - answer.nearest.direction_world).norm(), 1e-12);
       }
@@ -105,7 +105,7 @@ TEST(HybridDirection, IsNearlyThatOfTheExactObstacleSpace) {
     Asker asker(setup);
     const Reference oracle(oracle_problem(setup));
     for (const Vector3d& p_world : problem.points_world) {
-      const Answer answer = asker.hybrid(point(p_world));
+      const Answer answer = asker.hybrid(Capsule::point(p_world));
       if (answer.nearest.distance_m > 0.02 && answer.nearest.distance_m < 0.7 * setup.settings.rho_m) {
         const Vector3d t = mean_direction(oracle, setup.settings, p_world, random, 20000);
         const Vector3d exact = led(answer.nearest.direction_world, t, 1.0);
@@ -169,7 +169,7 @@ TEST(HybridDirection, NeverDrivesFromALargePlateIntoAFinger) {
   plate.T_world_box.translation() = Vector3d(0.22, 0, 0);
   plate.half_size_m = Vector3d(0.02, 0.6, 0.6);
   scene.add(plate);
-  scene.add(simulation::Capsule{{-0.06, 0, -0.02}, {-0.06, 0, 0.3}, 0.01});
+  scene.add(Capsule{{-0.06, 0, -0.02}, {-0.06, 0, 0.3}, 0.01});
   // Their shadows of the finger have nothing but the finger in common.
   Staged staged(scene, {{-1.5, -1.5, 0.8}, {-1.5, 1.5, 0.8}, {-1.8, 0.3, -1.0}});
   Random random(3);
@@ -179,7 +179,7 @@ TEST(HybridDirection, NeverDrivesFromALargePlateIntoAFinger) {
   const Vector3d to_finger(-1, 0, 0);
   for (const double blend : {0.0, 0.25, 0.5, 1.0}) {
     staged.setup.settings.direction_blend = blend;
-    const Answer answer = Asker(staged.setup).hybrid(point(Vector3d::Zero()));
+    const Answer answer = Asker(staged.setup).hybrid(Capsule::point(Vector3d::Zero()));
     EXPECT_LE(answer.nearest.distance_m, 0.05);
     const double most = staged.direction_error(0.05) + std::atan(blend);
     EXPECT_LE(angle_between(answer.hybrid_direction_world, to_finger), most) << "blend " << blend;
@@ -193,7 +193,7 @@ TEST(HybridDirection, OfAPlaneIsItsNormal) {
   Staged staged(scene, {{-2, 0.4, 0.3}, {-2, -0.5, 0.2}});
   for (const double blend : {0.0, 0.5, 1.0}) {
     staged.setup.settings.direction_blend = blend;
-    const Answer answer = Asker(staged.setup).hybrid(point(Vector3d::Zero()));
+    const Answer answer = Asker(staged.setup).hybrid(Capsule::point(Vector3d::Zero()));
     ASSERT_NEAR(answer.nearest.distance_m, 0.15, staged.setup.settings.resolution_m + 3.0 / Staged::kFocalPx);
     // The others are symmetrical about the normal: they may only turn the direction towards it.
     EXPECT_LE(angle_between(answer.hybrid_direction_world, Vector3d::UnitX()), staged.direction_error(0.15)) << blend;
@@ -211,7 +211,7 @@ TEST(HybridDirection, BetweenTwoPlatesIsAcrossThem) {
   Staged staged(scene, {{0.05, -2.2, 0.2}, {-0.05, 2.2, 0.3}});
   for (const double blend : {0.0, 0.5, 1.0}) {
     staged.setup.settings.direction_blend = blend;
-    const Answer answer = Asker(staged.setup).hybrid(point(Vector3d::Zero()));
+    const Answer answer = Asker(staged.setup).hybrid(Capsule::point(Vector3d::Zero()));
     ASSERT_GT(answer.nearest.distance_m, 0.1);
     ASSERT_LE(answer.nearest.distance_m, 0.2);
     const double off = std::acos(std::min(1.0, std::abs(answer.hybrid_direction_world.x())));
@@ -241,7 +241,7 @@ TEST(HybridDirection, IsComparableWithTheGrids) {
     evaluator.update(problem.frames);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Answer ours = asker.hybrid(point(p_world));
+      const Answer ours = asker.hybrid(Capsule::point(p_world));
       const grid::Evaluation theirs = evaluator.evaluate(p_world);
       // Only where both have the same nearest obstacle, else they are led by different ones.
       if (!(ours.nearest.distance_m > 0.02 && theirs.nearest.distance_m > 0.02 &&
@@ -264,7 +264,7 @@ TEST(HybridDirection, WithABudgetThatRunsOutStandsBesideALowerBound) {
   for_random_problems(10, {}, [&](const RandomProblem& problem, Random&) {
     Asker asker(make_setup(problem, SpaceKind::box, true));
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = point(p_world);
+      const Capsule primitive = Capsule::point(p_world);
       const double whole_m = asker.distance(primitive).nearest.distance_m;
       for (std::int64_t nodes = 1; nodes < 100'000; nodes *= 3) {
         Answer part;

@@ -67,12 +67,12 @@ SearchSetup random_setup(const RandomProblem& problem, Random& random) {
   return setup;
 }
 
-std::vector<Primitive> random_primitives(const RandomProblem& problem, Random& random) {
-  std::vector<Primitive> primitives;
+std::vector<Capsule> random_primitives(const RandomProblem& problem, Random& random) {
+  std::vector<Capsule> primitives;
   for (const Vector3d& p_world : problem.points_world) {
-    primitives.push_back(point(p_world));
-    primitives.push_back(sphere(p_world + random.in_cube(0.1), random.uniform(0, 0.1)));
-    primitives.push_back(capsule(p_world, p_world + random.in_cube(0.3), random.uniform(0, 0.1)));
+    primitives.push_back(Capsule::point(p_world));
+    primitives.push_back(Capsule::sphere(p_world + random.in_cube(0.1), random.uniform(0, 0.1)));
+    primitives.push_back(Capsule{p_world, p_world + random.in_cube(0.3), random.uniform(0, 0.1)});
   }
   return primitives;
 }
@@ -87,7 +87,7 @@ std::vector<std::uint64_t> answer_everything(std::uint64_t seed, bool hybrid) {
   const RandomProblem problem = reference::make_random_problem(options);
   Random random(options.seed);
   Asker asker(random_setup(problem, random));
-  const std::vector<Primitive> primitives = random_primitives(problem, random);
+  const std::vector<Capsule> primitives = random_primitives(problem, random);
   std::vector<Answer> answers(primitives.size());
   Count count;
   for (const Budget& budget : {Budget{}, Budget{40, 0}}) {

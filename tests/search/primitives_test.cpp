@@ -19,27 +19,26 @@ using reference::Reference;
 SpaceKind random_space(Random& random) { return random.chance(0.5) ? SpaceKind::box : SpaceKind::frustum; }
 
 /// A point, a sphere or a capsule at p.
-Primitive random_primitive(Random& random, const Vector3d& p_world) {
+Capsule random_primitive(Random& random, const Vector3d& p_world) {
   switch (random.integer(0, 2)) {
     case 0:
-      return point(p_world);
+      return Capsule::point(p_world);
     case 1:
-      return sphere(p_world, random.uniform(0.005, 0.1));
+      return Capsule::sphere(p_world, random.uniform(0.005, 0.1));
     default:
-      return capsule(p_world, p_world + random.in_cube(0.2), random.uniform(0, 0.08));
+      return Capsule{p_world, p_world + random.in_cube(0.2), random.uniform(0, 0.08)};
   }
 }
 
-Primitive moved(const Primitive& primitive, const Vector3d& by_m) {
-  return {primitive.a_world + by_m, primitive.b_world + by_m, primitive.radius_m};
+Capsule moved(const Capsule& primitive, const Vector3d& by_m) {
+  return {primitive.a + by_m, primitive.b + by_m, primitive.radius_m};
 }
 
-std::string to_text(const Primitive& primitive) {
+std::string to_text(const Capsule& primitive) {
   std::ostringstream text;
   text.precision(17);
-  text << "{{" << primitive.a_world.x() << ", " << primitive.a_world.y() << ", " << primitive.a_world.z() << "}, {"
-       << primitive.b_world.x() << ", " << primitive.b_world.y() << ", " << primitive.b_world.z() << "}, "
-       << primitive.radius_m << '}';
+  text << "{{" << primitive.a.x() << ", " << primitive.a.y() << ", " << primitive.a.z() << "}, {" << primitive.b.x()
+       << ", " << primitive.b.y() << ", " << primitive.b.z() << "}, " << primitive.radius_m << '}';
   return text.str();
 }
 
@@ -67,13 +66,13 @@ TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
     Asker asker(setup);
     Asker grown(with_reach(setup, setup.settings.resolution_m));
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = random_primitive(random, p_world);
+      const Capsule primitive = random_primitive(random, p_world);
       const Proximity nearest = asker.distance(primitive).nearest;
       if (!(nearest.distance_m > 0 && nearest.distance_m < setup.settings.rho_m)) {
         continue;
       }
       ASSERT_NEAR(nearest.direction_world.norm(), 1, 1e-9) << to_text(primitive);
-      const Primitive there = moved(primitive, nearest.distance_m * nearest.direction_world);
+      const Capsule there = moved(primitive, nearest.distance_m * nearest.direction_world);
       EXPECT_LE(grown.distance(there).nearest.distance_m, kTouchM)
           << to_text(primitive) << " answers " << nearest.distance_m;
       ++told;
@@ -92,12 +91,12 @@ TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
     const double shortfall_m = setup.settings.resolution_m / (1 - setup.settings.margins[0].rotation_rad);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = random_primitive(random, p_world);
+      const Capsule primitive = random_primitive(random, p_world);
       const Proximity nearest = asker.distance(primitive).nearest;
       if (!(nearest.distance_m > 0 && nearest.distance_m < setup.settings.rho_m)) {
         continue;
       }
-      const Primitive there = moved(primitive, nearest.distance_m * nearest.direction_world);
+      const Capsule there = moved(primitive, nearest.distance_m * nearest.direction_world);
       const double rest_m = asker.distance(there).nearest.distance_m;
       EXPECT_LE(rest_m, shortfall_m + kTouchM) << to_text(primitive) << " answers " << nearest.distance_m;
       EXPECT_LE(rest_m, std::max(nearest.distance_m, shortfall_m + kTouchM)) << to_text(primitive);
@@ -115,13 +114,13 @@ TEST(MovedByItsAnswer, MeetsNothingOnTheWay) {
     Asker asker(setup);
     const Reference oracle(oracle_problem(setup));
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = random_primitive(random, p_world);
+      const Capsule primitive = random_primitive(random, p_world);
       const Proximity nearest = asker.distance(primitive).nearest;
       if (!(nearest.distance_m > 0)) {
         continue;
       }
       for (int i = 0; i < 200; ++i) {
-        const Vector3d on_axis = primitive.a_world + random.uniform(0, 1) * (primitive.b_world - primitive.a_world);
+        const Vector3d on_axis = primitive.a + random.uniform(0, 1) * (primitive.b - primitive.a);
         // Straight ahead, where contact will be, and anywhere around.
         const Vector3d direction = random.chance(0.5) && nearest.distance_m < setup.settings.rho_m
                                        ? nearest.direction_world
@@ -147,8 +146,8 @@ TEST(Spheres, AreAsFarAsTheirCentreLessTheRadius) {
       const double rho_m = setup.settings.rho_m + radius_m;
       const Reference oracle(oracle_problem(setup, 0, rho_m));
       const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
-      const double answer_m = asker.distance(sphere(p_world, radius_m)).nearest.distance_m;
-      const std::string text = to_text(sphere(p_world, radius_m));
+      const double answer_m = asker.distance(Capsule::sphere(p_world, radius_m)).nearest.distance_m;
+      const std::string text = to_text(Capsule::sphere(p_world, radius_m));
       EXPECT_LE(answer_m, upper_m(oracle.distance(p_world), setup, radius_m)) << text;
       EXPECT_GE(answer_m, grown.distance(p_world).lo_m - radius_m - kRounding - kDoubleRounding) << text;
       told += answer_m > 0 && answer_m < setup.settings.rho_m ? 1 : 0;
@@ -164,8 +163,8 @@ TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive link = capsule(p_world, p_world + random.in_cube(0.2), random.uniform(0, 0.08));
-      const double length_m = (link.b_world - link.a_world).norm();
+      const Capsule link = Capsule{p_world, p_world + random.in_cube(0.2), random.uniform(0, 0.08)};
+      const double length_m = (link.b - link.a).norm();
       const double rho_m = setup.settings.rho_m + link.radius_m;
       const Reference oracle(oracle_problem(setup, 0, rho_m));
       const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
@@ -173,7 +172,7 @@ TEST(Capsules, AreAsFarAsTheNearestPointOfTheirAxisLessTheRadius) {
       double nearest_m = setup.settings.rho_m;
       double lower_m = rho_m;
       for (int i = 0; i < kSamples; ++i) {
-        const Vector3d on_axis = link.a_world + i / (kSamples - 1.0) * (link.b_world - link.a_world);
+        const Vector3d on_axis = link.a + i / (kSamples - 1.0) * (link.b - link.a);
         nearest_m = std::min(nearest_m, upper_m(oracle.distance(on_axis), setup, link.radius_m));
         lower_m = std::min(lower_m, grown.distance(on_axis).lo_m);
       }
@@ -193,7 +192,7 @@ TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive link = random_primitive(random, p_world);
+      const Capsule link = random_primitive(random, p_world);
       const Answer answer = asker.distance(link);
       if (!(answer.nearest.distance_m > 0 && answer.nearest.distance_m < setup.settings.rho_m)) {
         continue;
@@ -203,16 +202,16 @@ TEST(Capsules, HaveTheirContactOnTheAxisAndTheSurface) {
       EXPECT_NEAR(to_nearest.norm() - link.radius_m - kRounding, answer.nearest.distance_m, kDoubleRounding)
           << to_text(link);
       EXPECT_NEAR((to_nearest.normalized() - answer.nearest.direction_world).norm(), 0, 1e-9) << to_text(link);
-      const Vector3d axis = link.b_world - link.a_world;
-      const double along = (answer.on_axis_world - link.a_world).dot(axis);
+      const Vector3d axis = link.b - link.a;
+      const double along = (answer.on_axis_world - link.a).dot(axis);
       const double length2 = axis.squaredNorm();
       EXPECT_GE(along, -1e-12) << to_text(link);
       EXPECT_LE(along, length2 + 1e-12) << to_text(link);
       if (length2 == 0) {
-        EXPECT_EQ(answer.on_axis_world, link.a_world);
+        EXPECT_EQ(answer.on_axis_world, link.a);
       } else {
-        const double t = std::clamp((answer.nearest.nearest_world - link.a_world).dot(axis) / length2, 0.0, 1.0);
-        EXPECT_NEAR((link.a_world + t * axis - answer.on_axis_world).norm(), 0, 1e-9) << to_text(link);
+        const double t = std::clamp((answer.nearest.nearest_world - link.a).dot(axis) / length2, 0.0, 1.0);
+        EXPECT_NEAR((link.a + t * axis - answer.on_axis_world).norm(), 0, 1e-9) << to_text(link);
       }
       ++told;
     }
@@ -231,15 +230,15 @@ TEST(Capsules, OfHardlyAnyLengthAreSpheres) {
       const Interval interval = Reference(oracle_problem(setup, 0, rho_m)).distance(p_world);
       const Interval grown = Reference(oracle_problem(setup, setup.settings.resolution_m, rho_m)).distance(p_world);
       for (const double length_m : {1e-3, 1e-9, 1e-15, 1e-160, std::numeric_limits<double>::denorm_min()}) {
-        const Primitive link = capsule(p_world, p_world + length_m * random.direction(), radius_m);
+        const Capsule link = Capsule{p_world, p_world + length_m * random.direction(), radius_m};
         const double answer_m = asker.distance(link).nearest.distance_m;
         EXPECT_LE(answer_m, upper_m(interval, setup, radius_m)) << to_text(link);
         EXPECT_GE(answer_m, grown.lo_m - radius_m - length_m - kRounding - kDoubleRounding) << to_text(link);
       }
-      EXPECT_EQ(asker.distance(capsule(p_world, p_world, radius_m)).nearest.distance_m,
-                asker.distance(sphere(p_world, radius_m)).nearest.distance_m);
-      EXPECT_EQ(asker.distance(sphere(p_world, 0)).nearest.distance_m,
-                asker.distance(point(p_world)).nearest.distance_m);
+      EXPECT_EQ(asker.distance(Capsule{p_world, p_world, radius_m}).nearest.distance_m,
+                asker.distance(Capsule::sphere(p_world, radius_m)).nearest.distance_m);
+      EXPECT_EQ(asker.distance(Capsule::sphere(p_world, 0)).nearest.distance_m,
+                asker.distance(Capsule::point(p_world)).nearest.distance_m);
     }
   });
 }
@@ -250,24 +249,25 @@ TEST(Primitives, ThatAreNoneAreNotEvaluatedAndDisturbNobody) {
   for_random_problems(20, {}, [&](const RandomProblem& problem, Random& random) {
     Asker asker(make_setup(problem, random_space(random)));
     const Vector3d p = problem.points_world.front();
-    std::vector<Primitive> primitives{point(p), sphere(p, -1e-9), sphere(p, kNaN), sphere(p, kInfinity)};
+    std::vector<Capsule> primitives{Capsule::point(p), Capsule::sphere(p, -1e-9), Capsule::sphere(p, kNaN),
+                                    Capsule::sphere(p, kInfinity)};
     for (int axis = 0; axis < 3; ++axis) {
       for (const double bad : {kNaN, kInfinity, -kInfinity}) {
         Vector3d broken = p;
         broken[axis] = bad;
-        primitives.push_back(point(broken));
-        primitives.push_back(capsule(p, broken, 0.05));
-        primitives.push_back(capsule(broken, p, 0.05));
+        primitives.push_back(Capsule::point(broken));
+        primitives.push_back(Capsule{p, broken, 0.05});
+        primitives.push_back(Capsule{broken, p, 0.05});
       }
     }
-    primitives.push_back(sphere(p, 0.03));
+    primitives.push_back(Capsule::sphere(p, 0.03));
     const std::vector<Answer> answers = asker.distances(primitives);
     for (std::size_t i = 1; i + 1 < answers.size(); ++i) {
       EXPECT_EQ(answers[i].nearest.state, ProximityState::not_evaluated) << to_text(primitives[i]);
       EXPECT_TRUE(std::isnan(answers[i].nearest.distance_m)) << to_text(primitives[i]);
       EXPECT_TRUE(answers[i].nearest.nearest_world.array().isNaN().all()) << to_text(primitives[i]);
     }
-    const std::vector<Primitive> valid{primitives.front(), primitives.back()};
+    const std::vector<Capsule> valid{primitives.front(), primitives.back()};
     const std::vector<Answer> expected = asker.distances(valid);
     EXPECT_EQ(answers.front().nearest.distance_m, expected[0].nearest.distance_m);
     EXPECT_EQ(answers.back().nearest.distance_m, expected[1].nearest.distance_m);
@@ -280,12 +280,13 @@ TEST(Primitives, InOneCallKeepTheirBoundsAndRepeatToTheBit) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker whole(setup);
     Asker more(setup);  // with room for more answers than are asked for
-    std::vector<Primitive> primitives;
+    std::vector<Capsule> primitives;
     for (int i = 0; i < 11; ++i) {
       // Far apart in some calls, close together in others.
       const double apart_m = random.chance(0.5) ? 0.3 : 0.02;
       const Vector3d p_world = problem.points_world[0] + random.in_cube(apart_m);
-      primitives.push_back(random.chance(0.5) ? point(p_world) : sphere(p_world, random.uniform(0, 0.1)));
+      primitives.push_back(random.chance(0.5) ? Capsule::point(p_world)
+                                              : Capsule::sphere(p_world, random.uniform(0, 0.1)));
     }
     std::vector<Answer> answers(13);
     answers[11].nearest.distance_m = answers[12].nearest.distance_m = 7;
@@ -301,9 +302,8 @@ TEST(Primitives, InOneCallKeepTheirBoundsAndRepeatToTheBit) {
     const Reference grown(oracle_problem(setup, setup.settings.resolution_m, rho_m));
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       const double radius_m = primitives[i].radius_m;
-      const double most_m =
-          std::min(upper_m(oracle.distance(primitives[i].a_world), setup, radius_m), setup.settings.rho_m);
-      const double least_m = std::min(grown.distance(primitives[i].a_world).lo_m - radius_m, setup.settings.rho_m);
+      const double most_m = std::min(upper_m(oracle.distance(primitives[i].a), setup, radius_m), setup.settings.rho_m);
+      const double least_m = std::min(grown.distance(primitives[i].a).lo_m - radius_m, setup.settings.rho_m);
       for (const double answer_m : {answers[i].nearest.distance_m, at_once[i].nearest.distance_m}) {
         EXPECT_LE(answer_m, most_m) << to_text(primitives[i]);
         EXPECT_GE(answer_m, least_m - kRounding - kDoubleRounding) << to_text(primitives[i]);

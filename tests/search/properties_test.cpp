@@ -39,8 +39,8 @@ void expect_not_farther(const Question& x, const Question& y, Tally& tally) {
   const Reference grown_x(oracle_problem(x.setup, x.setup.settings.resolution_m));
   const double rho_m = y.setup.settings.rho_m;
   for (std::size_t i = 0; i < x.points_world.size(); ++i) {
-    const double answer_x_m = ask_x.distance(point(x.points_world[i])).nearest.distance_m;
-    const double answer_y_m = ask_y.distance(point(y.points_world[i])).nearest.distance_m;
+    const double answer_x_m = ask_x.distance(Capsule::point(x.points_world[i])).nearest.distance_m;
+    const double answer_y_m = ask_y.distance(Capsule::point(y.points_world[i])).nearest.distance_m;
     const Interval interval_y = oracle_y.distance(y.points_world[i]);
     const Interval interval_x = grown_x.distance(x.points_world[i]);
     EXPECT_LE(answer_x_m, interval_y.hi_m.value_or(rho_m)) << "point " << x.points_world[i].transpose();
@@ -89,7 +89,7 @@ TEST(Properties, SeveralCamerasAnswerAtLeastTheDistanceOfEachLessTheResolution) 
       const Reference single(oracle_problem(with_cameras(all, {k})));
       const double shortfall_m = all.settings.resolution_m / (1 - all.settings.margins[k].rotation_rad);
       for (const Vector3d& p : problem.points_world) {
-        const double answer_m = asker.distance(point(p)).nearest.distance_m;
+        const double answer_m = asker.distance(Capsule::point(p)).nearest.distance_m;
         const double proven_m = single.distance(p).lo_m;
         EXPECT_GE(answer_m, proven_m - shortfall_m - kRounding - kDoubleRounding)
             << "camera " << k << ", point " << p.transpose();
@@ -282,7 +282,7 @@ TEST(Properties, PosesOfFramesAreThoseOfTheRig) {
     Asker asker(setup);
     Search search;
     for (const Vector3d& p_world : problem.points_world) {
-      const Primitive primitive = point(p_world);
+      const Capsule primitive = Capsule::point(p_world);
       Answer answer;
       search.distances(store.snapshot(), {&primitive, 1}, {&answer, 1});
       const Proximity expected = asker.distance(primitive).nearest;
@@ -394,7 +394,7 @@ TEST(Properties, OnlyTheNewestFramesCount) {
       Asker fresh(*now);
       Search search;
       for (const Vector3d& p_world : points_world) {
-        const Primitive primitive = point(p_world);
+        const Capsule primitive = Capsule::point(p_world);
         Answer answer;
         search.distances(store.snapshot(), {&primitive, 1}, {&answer, 1});
         const Proximity expected = fresh.distance(primitive).nearest;

@@ -90,13 +90,13 @@ Asker::Asker(const SearchSetup& setup)
         return store_->snapshot();
       }()) {}
 
-Answer Asker::distance(const Primitive& primitive, const Budget& budget) {
+Answer Asker::distance(const Capsule& primitive, const Budget& budget) {
   Answer answer;
   search_.distances(snapshot_, {&primitive, 1}, {&answer, 1}, budget);
   return answer;
 }
 
-std::vector<Answer> Asker::distances(std::span<const Primitive> primitives, const Budget& budget) {
+std::vector<Answer> Asker::distances(std::span<const Capsule> primitives, const Budget& budget) {
   std::vector<Answer> answers(primitives.size());
   search_.distances(snapshot_, primitives, answers, budget);
   return answers;

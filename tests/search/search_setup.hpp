@@ -44,9 +44,9 @@ class Asker {
  public:
   explicit Asker(const SearchSetup& setup);
 
-  Answer distance(const Primitive& primitive, const Budget& budget = {});
-  std::vector<Answer> distances(std::span<const Primitive> primitives, const Budget& budget = {});
-  Answer hybrid(const Primitive& primitive) {
+  Answer distance(const Capsule& primitive, const Budget& budget = {});
+  std::vector<Answer> distances(std::span<const Capsule> primitives, const Budget& budget = {});
+  Answer hybrid(const Capsule& primitive) {
     Answer answer;
     search_.hybrid(snapshot_, {&primitive, 1}, {&answer, 1});
     return answer;

@@ -50,12 +50,12 @@ struct Deliveries {
   }
 };
 
-std::vector<Primitive> some_primitives() {
-  std::vector<Primitive> primitives;
+std::vector<Capsule> some_primitives() {
+  std::vector<Capsule> primitives;
   Random random(1);
   for (int i = 0; i < 6; ++i) {
     const Eigen::Vector3d p_world = random.in_cube(0.5);
-    primitives.push_back(i % 2 == 0 ? point(p_world) : capsule(p_world, p_world + random.in_cube(0.1), 0.03));
+    primitives.push_back(i % 2 == 0 ? Capsule::point(p_world) : Capsule{p_world, p_world + random.in_cube(0.1), 0.03});
   }
   return primitives;
 }
@@ -85,7 +85,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
   const test::RandomRun run = test::random_run(3);
   for (std::int64_t problem = 0; problem < std::min<std::int64_t>(run.count, 3); ++problem) {
     const Deliveries deliveries(run.seed + 10 * static_cast<std::uint64_t>(problem));
-    const std::vector<Primitive> primitives = some_primitives();
+    const std::vector<Capsule> primitives = some_primitives();
     std::vector<Told> legal;
     for (unsigned set = 0; set < 1U << kCameras; ++set) {
       views::ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
@@ -166,7 +166,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
 
 TEST(Threads, MayShareOneSnapshot) {
   const Deliveries deliveries(4);
-  const std::vector<Primitive> primitives = some_primitives();
+  const std::vector<Capsule> primitives = some_primitives();
   views::ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
   for (std::size_t k = 0; k < kCameras; ++k) {
     (void)store.update(k, deliveries.frames[0][k], deliveries.poses[0][k]);

@@ -87,10 +87,10 @@ struct Exposures {
 };
 
 /// In the ball, on it and around it, on all sides.
-std::vector<Primitive> points_around(const Vector3d& ball_world, reference::Random& random) {
-  std::vector<Primitive> points{point(ball_world)};
+std::vector<Capsule> points_around(const Vector3d& ball_world, reference::Random& random) {
+  std::vector<Capsule> points{Capsule::point(ball_world)};
   for (int i = 0; i < 15; ++i) {
-    points.push_back(point(ball_world + random.uniform(0, 0.25) * random.direction()));
+    points.push_back(Capsule::point(ball_world + random.uniform(0, 0.25) * random.direction()));
   }
   return points;
 }
@@ -121,13 +121,13 @@ Lost count_lost(SearchSetup setup, const Crossing& crossing, const std::vector<d
     }
     const views::Snapshot snapshot = store.snapshot();
     EXPECT_EQ(snapshot.reference_time_s(), t_ref_s);
-    const std::vector<Primitive> points = points_around(crossing.ball_world(t_ref_s), random);
+    const std::vector<Capsule> points = points_around(crossing.ball_world(t_ref_s), random);
     std::vector<Answer> answers(points.size());
     search.distances(snapshot, points, answers);
     const simulation::Scene truth = crossing.scene(t_ref_s);
     bool lost = false;
     for (std::size_t p = 0; p < points.size(); ++p) {
-      const double excess_m = answers[p].nearest.distance_m - truth.distance(points[p].a_world).distance_m;
+      const double excess_m = answers[p].nearest.distance_m - truth.distance(points[p].a).distance_m;
       lost = lost || excess_m > allowed_m;
       result.largest_m = std::max(result.largest_m, excess_m);
     }

@@ -16,20 +16,20 @@ TEST(Figures, PersonKeepsLimbLengthsAndReachesWithinReach) {
     pose.heading_rad = random.uniform(-3, 3);
     pose.lean_rad = random.uniform(-0.1, 0.6);
     const auto standing = person(pose);
-    const Eigen::Vector3d shoulder = standing[5].a_world;
+    const Eigen::Vector3d shoulder = standing[5].a;
     const double reach_m = random.uniform(0.3, 0.9);
     pose.left_fingertips_world = shoulder + reach_m * random.unit();
     const auto parts = person(pose);
-    const auto length = [&](std::size_t i) { return (parts[i].b_world - parts[i].a_world).norm(); };
+    const auto length = [&](std::size_t i) { return (parts[i].b - parts[i].a).norm(); };
     const std::string where = "case seed " + std::to_string(seed() + static_cast<unsigned long>(n));
     ASSERT_NEAR(length(5), 0.30, 1e-9) << where;
     ASSERT_NEAR(length(6), 0.26, 1e-3) << where;
     ASSERT_NEAR(length(7), 0.15, 1e-9) << where;
-    ASSERT_EQ(parts[5].a_world, shoulder) << where;
-    ASSERT_EQ(parts[5].b_world, parts[6].a_world) << where;
-    ASSERT_EQ(parts[6].b_world, parts[7].a_world) << where;
-    ASSERT_NEAR((parts[7].b_world - pose.left_fingertips_world).norm(), std::max(0.0, reach_m - 0.71), 1e-5) << where;
-    ASSERT_LE(parts[5].b_world.z(), std::max(parts[5].a_world.z(), parts[6].b_world.z()) + 1e-9) << where;
+    ASSERT_EQ(parts[5].a, shoulder) << where;
+    ASSERT_EQ(parts[5].b, parts[6].a) << where;
+    ASSERT_EQ(parts[6].b, parts[7].a) << where;
+    ASSERT_NEAR((parts[7].b - pose.left_fingertips_world).norm(), std::max(0.0, reach_m - 0.71), 1e-5) << where;
+    ASSERT_LE(parts[5].b.z(), std::max(parts[5].a.z(), parts[6].b.z()) + 1e-9) << where;
     for (const Capsule& part : parts) {
       validate(part);
     }
@@ -40,8 +40,8 @@ TEST(Figures, PersonStandsOnTheFloorAndIsAsTallAsStated) {
   double lowest = 10;
   double highest = 0;
   for (const Capsule& part : person({})) {
-    lowest = std::min({lowest, part.a_world.z() - part.radius_m, part.b_world.z() - part.radius_m});
-    highest = std::max({highest, part.a_world.z() + part.radius_m, part.b_world.z() + part.radius_m});
+    lowest = std::min({lowest, part.a.z() - part.radius_m, part.b.z() - part.radius_m});
+    highest = std::max({highest, part.a.z() + part.radius_m, part.b.z() + part.radius_m});
   }
   EXPECT_NEAR(lowest, 0, 1e-9);
   EXPECT_NEAR(highest, 1.75, 1e-9);

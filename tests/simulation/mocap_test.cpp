@@ -80,18 +80,18 @@ TEST(Mocap, AClipIsZUpAndMovesStraightBetweenFrames) {
   const MocapSkeleton skeleton = parse_asf(kAsf, "asf");
   const MocapClip clip(skeleton, parse_amc(kAmc, skeleton, "amc"), 10);
   EXPECT_DOUBLE_EQ(clip.duration_s(), 0.1);
-  const Eigen::Vector3d knee = clip.at(0)[0].b_world;
-  const Eigen::Vector3d knee_after = clip.at(0.1)[0].b_world;
+  const Eigen::Vector3d knee = clip.at(0)[0].b;
+  const Eigen::Vector3d knee_after = clip.at(0.1)[0].b;
   EXPECT_LT((knee - Eigen::Vector3d(0, 0, 0.5)).norm(), 1e-12);
   EXPECT_LT((knee_after - Eigen::Vector3d(-0.49, 0, 1)).norm(), 1e-12);
-  EXPECT_LT((clip.at(0.05)[0].b_world - 0.5 * (knee + knee_after)).norm(), 1e-12);
-  EXPECT_EQ(clip.at(-1)[0].b_world, knee);
-  EXPECT_EQ(clip.at(7)[0].b_world, knee_after);
+  EXPECT_LT((clip.at(0.05)[0].b - 0.5 * (knee + knee_after)).norm(), 1e-12);
+  EXPECT_EQ(clip.at(-1)[0].b, knee);
+  EXPECT_EQ(clip.at(7)[0].b, knee_after);
   const double ankle_m_s = Eigen::Vector3d(-0.89, 0, 0.9).norm() * 10;
   EXPECT_NEAR(clip.v_max_m_s(), ankle_m_s, 1e-9);
   Pose T_world_floor = Pose::Identity();
   T_world_floor.translation() = Eigen::Vector3d(1, 2, 3);
-  EXPECT_LT((clip.at(0, T_world_floor)[0].b_world - Eigen::Vector3d(1, 2, 3.5)).norm(), 1e-12);
+  EXPECT_LT((clip.at(0, T_world_floor)[0].b - Eigen::Vector3d(1, 2, 3.5)).norm(), 1e-12);
 }
 
 std::string refusal(std::string asf, const std::string& from, const std::string& to, std::string amc = kAmc) {
@@ -156,8 +156,8 @@ TEST_F(CmuMocap, APersonOfNormalSizeStandsOnTheFloor) {
       ASSERT_EQ(body.size(), 30U);
       for (const Capsule& part : body) {
         validate(part);
-        lowest_m = std::min({lowest_m, part.a_world.z(), part.b_world.z()});
-        highest_m = std::max({highest_m, part.a_world.z(), part.b_world.z()});
+        lowest_m = std::min({lowest_m, part.a.z(), part.b.z()});
+        highest_m = std::max({highest_m, part.a.z(), part.b.z()});
       }
     }
     EXPECT_GT(lowest_m, -0.05) << name;
@@ -173,7 +173,7 @@ TEST_F(CmuMocap, APersonOfNormalSizeStandsOnTheFloor) {
 
 TEST_F(CmuMocap, TheWalkTravels) {
   const MocapClip walk = clip("02_01.amc");
-  const Eigen::Vector3d way_m = walk.at(walk.duration_s())[0].a_world - walk.at(0)[0].a_world;
+  const Eigen::Vector3d way_m = walk.at(walk.duration_s())[0].a - walk.at(0)[0].a;
   EXPECT_NEAR(way_m.head<2>().norm(), 3.34, 0.1);
 }
 

@@ -45,8 +45,8 @@ TEST(PersonScript, NothingMovesFasterThanStated) {
     for (double t = 0; t <= script.duration_s() + kStep; t += kStep) {
       const PersonState now = script.at(t);
       for (std::size_t i = 0; i < now.parts_world.size(); ++i) {
-        for (const double move_m : {(now.parts_world[i].a_world - before.parts_world[i].a_world).norm(),
-                                    (now.parts_world[i].b_world - before.parts_world[i].b_world).norm()}) {
+        for (const double move_m : {(now.parts_world[i].a - before.parts_world[i].a).norm(),
+                                    (now.parts_world[i].b - before.parts_world[i].b).norm()}) {
           of_script_m_s = std::max(of_script_m_s, move_m / kStep);
         }
       }
@@ -71,7 +71,7 @@ TEST(PersonScript, BonesKeepTheirLengthAndOneFootIsOnTheFloor) {
   const PersonStage stage;
   for_each_script(count(4), stage, [&](const PersonScript& script, std::uint64_t n) {
     const PersonState first = script.at(0);
-    const auto length_m = [](const Capsule& part) { return (part.b_world - part.a_world).norm(); };
+    const auto length_m = [](const Capsule& part) { return (part.b - part.a).norm(); };
     for (double t = 0; t < script.duration_s(); t += 0.03) {
       const PersonState now = script.at(t);
       for (std::size_t i = 0; i < now.parts_world.size(); ++i) {
@@ -80,11 +80,11 @@ TEST(PersonScript, BonesKeepTheirLengthAndOneFootIsOnTheFloor) {
         validate(now.parts_world[i]);
       }
       for (const std::size_t limb : {kFirstArm, kFirstArm + 3, kFirstLeg, kFirstLeg + 3}) {
-        ASSERT_LT((now.parts_world[limb].b_world - now.parts_world[limb + 1].a_world).norm(), 1e-9);
+        ASSERT_LT((now.parts_world[limb].b - now.parts_world[limb + 1].a).norm(), 1e-9);
       }
       double lowest_m = 10;
       for (const Capsule& part : now.parts_world) {
-        lowest_m = std::min({lowest_m, part.a_world.z() - part.radius_m, part.b_world.z() - part.radius_m});
+        lowest_m = std::min({lowest_m, part.a.z() - part.radius_m, part.b.z() - part.radius_m});
       }
       ASSERT_NEAR(lowest_m, stage.floor_m, 1e-9) << where(script.motion(), n, t);
       ASSERT_EQ(now.carried_world.has_value(), script.motion() == Motion::carry_box);
@@ -108,7 +108,7 @@ TEST(PersonScript, EveryMotionDoesWhatItIsNamedFor) {
     for (double t = 0; t < script.duration_s(); t += 0.02) {
       const PersonState now = script.at(t);
       for (const std::size_t arm : {kFirstArm, kFirstArm + 3}) {
-        const Eigen::Vector3d tip = now.parts_world[arm + 2].b_world;
+        const Eigen::Vector3d tip = now.parts_world[arm + 2].b;
         nearest_tip_m = std::min(nearest_tip_m, (tip - robot).norm());
         if ((tip - robot).dot(robot - stage.camera_world) > 0) {
           hidden_tip_m = std::min(hidden_tip_m, point_to_line_m(tip, stage.camera_world, robot));
@@ -149,7 +149,7 @@ TEST(PersonScript, EveryMotionDoesWhatItIsNamedFor) {
     // Comes from outside and leaves.
     for (const double t : {0.0, script.duration_s()}) {
       for (const Capsule& part : script.at(t).parts_world) {
-        EXPECT_GT((part.a_world - robot).head<2>().norm(), 1.4) << which;
+        EXPECT_GT((part.a - robot).head<2>().norm(), 1.4) << which;
       }
     }
   });
@@ -157,15 +157,14 @@ TEST(PersonScript, EveryMotionDoesWhatItIsNamedFor) {
 
 TEST(PersonScript, SeedMotionAndTimeDecideAlone) {
   const auto tip = [](Motion motion, std::uint64_t n, double t) {
-    return PersonScript(motion, {}, n).at(t).parts_world[7].b_world;
+    return PersonScript(motion, {}, n).at(t).parts_world[7].b;
   };
   for (const Motion motion : motions()) {
     EXPECT_EQ(tip(motion, 3, 2.5), tip(motion, 3, 2.5));
     EXPECT_NE(tip(motion, 3, 2.5), tip(motion, 4, 2.5));
     const PersonScript script(motion, {}, 1);
-    EXPECT_EQ(script.at(-5).parts_world[0].a_world, script.at(0).parts_world[0].a_world);
-    EXPECT_EQ(script.at(script.duration_s() + 5).parts_world[0].a_world,
-              script.at(script.duration_s()).parts_world[0].a_world);
+    EXPECT_EQ(script.at(-5).parts_world[0].a, script.at(0).parts_world[0].a);
+    EXPECT_EQ(script.at(script.duration_s() + 5).parts_world[0].a, script.at(script.duration_s()).parts_world[0].a);
   }
 }
 

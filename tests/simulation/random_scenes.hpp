@@ -90,15 +90,15 @@ inline Solid describe(const Capsule& s) {
       [s](double pad) {
         return [s, pad](const Eigen::Vector3d& p) {
           // Distance to a segment: to the infinite line where the foot lies between the ends, else to the nearer end.
-          const Eigen::Vector3d ab = s.b_world - s.a_world;
-          double to_axis = std::min((p - s.a_world).norm(), (p - s.b_world).norm());
-          if (ab.dot(p - s.a_world) > 0 && ab.dot(p - s.b_world) < 0) {
-            to_axis = ab.cross(p - s.a_world).norm() / ab.norm();
+          const Eigen::Vector3d ab = s.b - s.a;
+          double to_axis = std::min((p - s.a).norm(), (p - s.b).norm());
+          if (ab.dot(p - s.a) > 0 && ab.dot(p - s.b) < 0) {
+            to_axis = ab.cross(p - s.a).norm() / ab.norm();
           }
           return to_axis - s.radius_m - pad;
         };
       },
-      "Capsule{" + code(s.a_world) + ", " + code(s.b_world) + ", " + std::to_string(s.radius_m) + "}");
+      "Capsule{" + code(s.a) + ", " + code(s.b) + ", " + std::to_string(s.radius_m) + "}");
 }
 
 class Random {

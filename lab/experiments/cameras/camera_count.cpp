@@ -32,9 +32,9 @@ struct SurfacePoint {
 };
 std::vector<SurfacePoint> surface_points(const ArmAtWork& arm, double padding_m) {
   std::vector<SurfacePoint> points;
-  for (const simulation::Capsule& link : arm.capsules_world()) {
+  for (const Capsule& link : arm.capsules_world()) {
     for (const double share : {0.0, 0.5, 1.0}) {
-      points.push_back({link.a_world + share * (link.b_world - link.a_world), link.radius_m + padding_m});
+      points.push_back({link.a + share * (link.b - link.a), link.radius_m + padding_m});
     }
   }
   return points;

@@ -6,16 +6,6 @@
 
 namespace depthgrid::experiments {
 
-namespace {
-
-/// The point of a capsule's axis nearest to p.
-Eigen::Vector3d on_axis(const simulation::Capsule& capsule, const Eigen::Vector3d& p_world) {
-  const search::Primitive axis = search::capsule(capsule.a_world, capsule.b_world, 0);
-  return search::nearest_on_axis(axis, p_world);
-}
-
-}  // namespace
-
 PlateScene plate_scene(Method method, const AvoidanceSettings& settings) {
   const robot::RobotModel model = robot::kuka_lwr4();
   const AvoidanceMotion motion = hand_against_plate(hexagon_centre_world(model));
@@ -29,9 +19,9 @@ PlateScene plate_scene(Method method, const AvoidanceSettings& settings) {
   scene.contacts = static_cast<int>(result.summary.contacts.size());
   for (const RunSample& sample : result.samples) {
     const MovingSolids hand = motion.at(sample.time_s);
-    Eigen::Vector3d way = on_axis(hand.capsules[0], sample.end_effector_world) - sample.end_effector_world;
-    for (const simulation::Capsule& capsule : hand.capsules) {
-      const Eigen::Vector3d other = on_axis(capsule, sample.end_effector_world) - sample.end_effector_world;
+    Eigen::Vector3d way = nearest_on_axis(hand.capsules[0], sample.end_effector_world) - sample.end_effector_world;
+    for (const Capsule& capsule : hand.capsules) {
+      const Eigen::Vector3d other = nearest_on_axis(capsule, sample.end_effector_world) - sample.end_effector_world;
       way = other.norm() < way.norm() ? other : way;
     }
     const double to_hand_m_s = sample.repulsion_m_s.dot(way.normalized());

@@ -7,21 +7,16 @@
 #include <numbers>
 #include <random>
 
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/robot/capsule.hpp"
 
 namespace depthgrid::experiments {
 
 using simulation::Box;
-using simulation::Capsule;
 
 namespace {
 
 constexpr double kLookStep = 0.05;  // seconds between the instants that are looked at
-
-double axis_distance_m(const Capsule& capsule, const Eigen::Vector3d& p_world) {
-  return robot::distance_to_axis({capsule.a_world, capsule.b_world, capsule.radius_m}, p_world);
-}
 
 }  // namespace
 
@@ -110,7 +105,7 @@ AvoidanceMotion nearest_part(const AvoidanceMotion& motion, const Eigen::Vector3
   for (int i = 0; i * kLookStep <= motion.duration_s; ++i) {
     const double t = i * kLookStep;
     for (const Capsule& capsule : motion.at(t).capsules) {
-      const double distance_m = axis_distance_m(capsule, p_world) - capsule.radius_m;
+      const double distance_m = distance_to_axis(capsule, p_world) - capsule.radius_m;
       if (distance_m < nearest_m) {
         nearest_m = distance_m;
         nearest_s = t;
@@ -129,7 +124,7 @@ bool meets_a_camera(const AvoidanceMotion& motion, const Rig& rig) {
   for (int i = 0; motion.at && i * kLookStep <= motion.duration_s; ++i) {
     for (const Capsule& capsule : motion.at(i * kLookStep).capsules) {
       for (const RigCamera& camera : rig.cameras) {
-        if (axis_distance_m(capsule, camera.T_world_camera.translation()) < kNear + capsule.radius_m) {
+        if (distance_to_axis(capsule, camera.T_world_camera.translation()) < kNear + capsule.radius_m) {
           return true;
         }
       }

@@ -18,7 +18,7 @@ inline constexpr double kHexagonRadius_m = 0.2;  ///< of the task, where a motio
 
 /// Solids in the world frame; always as many of each.
 struct MovingSolids {
-  std::vector<simulation::Capsule> capsules;
+  std::vector<Capsule> capsules;
   std::vector<simulation::Box> boxes;
 };
 

@@ -20,7 +20,7 @@ class ContactWatch {
  public:
   /// `parts` are those that the loop asks about. Everything must outlive it.
   ContactWatch(Method method, const robot::RobotModel& model, const avoidance::AvoidanceLoop& loop,
-               std::span<const avoidance::RobotPart> parts, const AvoidanceSettings& settings)
+               std::span<const robot::LinkCapsule> parts, const AvoidanceSettings& settings)
       : method_(method), model_(model), loop_(loop), parts_(parts), settings_(settings) {}
 
   /// Every period, after the loop's cycle, with the true distance of then. Adds to contacts, to the time in contact,
@@ -38,7 +38,7 @@ class ContactWatch {
   Method method_;
   const robot::RobotModel& model_;
   const avoidance::AvoidanceLoop& loop_;
-  std::span<const avoidance::RobotPart> parts_;
+  std::span<const robot::LinkCapsule> parts_;
   const AvoidanceSettings& settings_;
   bool touching_ = false;
   // When last there was a distance:

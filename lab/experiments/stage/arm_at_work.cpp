@@ -50,11 +50,7 @@ void ArmAtWork::move_to(double time_s) {
 
 void ArmAtWork::pose(const std::array<double, 7>& q_rad) {
   (void)model_.link_poses(q_rad, Pose::Identity(), T_world_link_);
-  std::vector<robot::Capsule> placed(capsules_.size());
-  robot::place(capsules_, T_world_link_, placed);
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    capsules_world_[i] = {placed[i].a, placed[i].b, placed[i].radius_m};
-  }
+  robot::place(capsules_, T_world_link_, capsules_world_);
   robot::place(points_, T_world_link_, points_world_);
 }
 

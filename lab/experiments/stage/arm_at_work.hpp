@@ -29,7 +29,7 @@ class ArmAtWork {
   /// In the order of model().links().
   [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
   /// The links' capsules in the world frame.
-  [[nodiscard]] std::span<const simulation::Capsule> capsules_world() const noexcept { return capsules_world_; }
+  [[nodiscard]] std::span<const Capsule> capsules_world() const noexcept { return capsules_world_; }
   /// Nine points evenly spaced on the arm's axis, from above the shoulder to the flange; world frame. All are more than
   /// 0.4 m above the pedestal, whose top reaches into the robot's base: what stands inside the robot's padding no
   /// method can see.
@@ -43,7 +43,7 @@ class ArmAtWork {
   std::vector<robot::LinkCapsule> capsules_;
   std::vector<robot::ControlPoint> points_;
   std::vector<Pose> T_world_link_;
-  std::vector<simulation::Capsule> capsules_world_;
+  std::vector<Capsule> capsules_world_;
   std::vector<Eigen::Vector3d> points_world_;
 };
 

@@ -111,7 +111,7 @@ class DistanceMethod::SearchMethod final : public Evaluator {
   void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers) override {
     primitives_.clear();
     for (const Eigen::Vector3d& p_world : points_world) {
-      primitives_.push_back(search::point(p_world));
+      primitives_.push_back(Capsule::point(p_world));
     }
     found_.resize(primitives_.size());
     search_.distances(store_.snapshot(), primitives_, found_);
@@ -123,7 +123,7 @@ class DistanceMethod::SearchMethod final : public Evaluator {
  private:
   views::ViewStore store_;
   search::Search search_;
-  std::vector<search::Primitive> primitives_;
+  std::vector<Capsule> primitives_;
   std::vector<search::Answer> found_;
 };
 

@@ -10,7 +10,7 @@ namespace depthgrid::experiments {
 std::size_t points_behind_person(const StagedCell& stage, const Eigen::Vector3d& camera_world) {
   const simulation::WorkcellBody& person = stage.cell().bodies[stage.person_body()];
   const auto hidden = [&](const Eigen::Vector3d& p_world) {
-    return std::any_of(person.capsules.begin(), person.capsules.end(), [&](const simulation::Capsule& part) {
+    return std::any_of(person.capsules.begin(), person.capsules.end(), [&](const Capsule& part) {
       const simulation::Interval inside = simulation::intersect(part, {camera_world, p_world - camera_world});
       return !inside.empty() && inside.exit > 0 && inside.entry < 1;
     });

@@ -34,7 +34,7 @@ class TimedSource final : public avoidance::DistanceSource {
   explicit TimedSource(avoidance::DistanceSource& source) : source_(source) {}
   [[nodiscard]] std::string_view name() const noexcept override { return source_.name(); }
   bool take(std::span<const Frame> frames) noexcept override { return source_.take(frames); }
-  void evaluate(std::span<const search::Primitive> parts_world, double now_s,
+  void evaluate(std::span<const Capsule> parts_world, double now_s,
                 std::span<avoidance::PartAnswer> answers) noexcept override {
     const auto begin = Clock::now();
     source_.evaluate(parts_world, now_s, answers);

@@ -96,9 +96,9 @@ TEST(ArmAtWork, ControlPointsLieOnTheAxisInsideTheCapsules) {
   for (const double time_s : {0.0, 3.0, 7.5}) {
     arm.move_to(time_s);
     for (const Eigen::Vector3d& p_world : arm.points_world()) {
-      EXPECT_TRUE(std::any_of(arm.capsules_world().begin(), arm.capsules_world().end(),
-                              [&](const simulation::Capsule& link) { return simulation::contains(link, p_world); }))
-          << p_world.transpose();
+      EXPECT_TRUE(std::any_of(arm.capsules_world().begin(), arm.capsules_world().end(), [&](const Capsule& link) {
+        return simulation::contains(link, p_world);
+      })) << p_world.transpose();
     }
   }
 }

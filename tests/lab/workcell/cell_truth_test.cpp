@@ -14,7 +14,6 @@ namespace {
 
 using simulation::BodyKind;
 using simulation::Box;
-using simulation::Capsule;
 using simulation::Plane;
 using simulation::Sphere;
 using simulation::TriangleMesh;
@@ -46,9 +45,7 @@ double least(const Function& f) {
   return f(0.5 * (lower + upper));
 }
 
-Eigen::Vector3d on_axis(const Capsule& capsule, double share) {
-  return capsule.a_world + share * (capsule.b_world - capsule.a_world);
-}
+Eigen::Vector3d on_axis(const Capsule& capsule, double share) { return capsule.a + share * (capsule.b - capsule.a); }
 
 /// Distance of two convex solids, one of them a capsule: that of its axis, point by point, less its radius.
 template <class Shape>

@@ -14,7 +14,6 @@ namespace depthgrid::workcell::testing {
 namespace {
 
 using simulation::BodyKind;
-using simulation::Capsule;
 using simulation::TriangleMesh;
 using simulation::Workcell;
 using simulation::WorkcellBody;
