@@ -192,7 +192,7 @@ void write_page(const LetterErrors& errors, std::ostream& out) {
          "camera has seen free: a\ncamera frees the points that project into its image with a depth below that pixel's "
          "measurement. D(P) is the distance of P from O, at\nmost rho. A slow reference in the tests, with its own "
          "projection, encloses D(P) in a proven interval [lo, hi]: boxes around P are divided\ndown to half a "
-         "millimetre, and hi is the distance of a point that does lie in O. The scenes are random (planes, boxes, "
+         "millimetre, and hi is the distance of a point that does lie in O.\n\nThe scenes are random (planes, boxes, "
          "spheres, capsules of\n1 cm and more; cameras 1.3 to 2.5 m away in all directions), the sensor is ideal, "
          "without margins; rho = 0.4 m, cells of 1 cm. Where an evaluation\nfinds nothing its answer is rho, so its "
          "over-estimate is at least what is listed. Points inside an obstacle count too (their error is\nmostly 0).\n\n"
