@@ -52,7 +52,11 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/depthgridConfigVersion.c
 install(FILES "${PROJECT_BINARY_DIR}/depthgridConfig.cmake" "${PROJECT_BINARY_DIR}/depthgridConfigVersion.cmake"
   DESTINATION ${depthgrid_package_dir} COMPONENT dev)
 
+# Everything that an installation copies out of the build.
+add_custom_target(depthgrid_installed)
+add_dependencies(depthgrid_installed ${depthgrid_libraries})
 if(TARGET depthgrid)
+  add_dependencies(depthgrid_installed depthgrid)
   # Finds shared libraries installed beside it wherever the prefix is moved to.
   set_target_properties(depthgrid PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS depthgrid RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT app)

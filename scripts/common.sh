@@ -21,13 +21,23 @@ job_count() {
 # Warnings are errors in CI and nowhere else.
 warnings_as_errors() { [[ ${CI:-} == true ]] && echo ON || echo OFF; }
 
-# build_preset PRESET [TARGET...] configures and builds; further cmake options in the array configure_options.
+# configure_preset PRESET; further cmake options in the array configure_options.
 configure_options=()
-build_preset() {
+configure_preset() {
+  say "configure $1"
+  cmake --preset "$1" -DDEPTHGRID_WARNINGS_AS_ERRORS="$(warnings_as_errors)" "${configure_options[@]}"
+}
+
+# build_targets PRESET [TARGET...] builds everything, or these.
+build_targets() {
   local preset=$1
   shift
-  say "configure $preset"
-  cmake --preset "$preset" -DDEPTHGRID_WARNINGS_AS_ERRORS="$(warnings_as_errors)" "${configure_options[@]}"
-  say "build $preset"
+  say "build $preset${*:+: $*}"
   cmake --build --preset "$preset" --parallel "$(job_count)" ${1:+--target "$@"}
+}
+
+# build_preset PRESET [TARGET...] configures and builds.
+build_preset() {
+  configure_preset "$1"
+  build_targets "$@"
 }
