@@ -23,11 +23,11 @@
 #include <vector>
 
 #include "depthgrid/avoidance/avoidance_loop.hpp"
-#include "depthgrid/avoidance/frame_intake.hpp"
 #include "depthgrid/avoidance/search_distances.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/sensor_models.hpp"
+#include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/urdf.hpp"
@@ -169,10 +169,10 @@ control::JointLimits joint_limits(const robot::RobotModel& model) {
 // What distances are asked for: the capsules of all links that two joints or more move. The first part is the end
 // effector: the origin of its link is what follows the task and is repelled. A tip link without a shape gets a point.
 std::vector<robot::LinkCapsule> parts_of(const robot::RobotModel& model, std::size_t tip_link) {
-  std::vector<robot::LinkCapsule> parts = avoidance::moving_capsules(model);
+  std::vector<robot::LinkCapsule> parts = robot::moving_capsules(model);
   const auto tip = std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.link == tip_link; });
   if (tip == parts.end()) {
-    parts.insert(parts.begin(), {.link = tip_link});
+    parts.insert(parts.begin(), {tip_link, {}});
   } else {
     std::rotate(parts.begin(), tip, tip + 1);
   }
@@ -257,7 +257,7 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   // for an obstacle and stops; what is nearer to it than this is not seen (docs/robot.md).
   exposure.removal.padding_m = 0.085;
   exposure.time_error_s = 0.005;  // between the clocks of joints and cameras, half the exposure included
-  avoidance::FrameIntake intake(rig, model, history, exposure);
+  robot::FrameIntake intake(rig, model, history, exposure);
 
   avoidance::AvoidanceLoop loop(model, history, source, settings);
   MyArm arm(limits, q_start);

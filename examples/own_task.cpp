@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "depthgrid/avoidance/distance_source.hpp"
-#include "depthgrid/avoidance/robot_parts.hpp"
 #include "depthgrid/control/controller.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/robot/joint_history.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
+#include "depthgrid/robot/robot_parts.hpp"
 
 namespace avoidance = depthgrid::avoidance;
 namespace control = depthgrid::control;
@@ -79,7 +79,7 @@ int run() {
   const robot::RobotModel model = robot::kuka_lwr4();
   const Pose T_world_base = Pose::Identity();  // the base is the world
   const std::size_t tip = model.link_index("lwr_7_link");
-  const std::vector<robot::LinkCapsule> parts = avoidance::moving_capsules(model);  // the first is of the tip's link
+  const std::vector<robot::LinkCapsule> parts = robot::moving_capsules(model);  // the first is of the tip's link
 
   control::ControllerSettings settings;
   settings.limits = limits_of_lwr();

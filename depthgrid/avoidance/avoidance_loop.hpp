@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "depthgrid/avoidance/distance_source.hpp"
-#include "depthgrid/avoidance/robot_parts.hpp"
 #include "depthgrid/control/controller.hpp"
 #include "depthgrid/control/polygon_task.hpp"
 #include "depthgrid/robot/joint_history.hpp"
 #include "depthgrid/robot/robot_model.hpp"
+#include "depthgrid/robot/robot_parts.hpp"
 
 namespace depthgrid::avoidance {
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "avoidance/flat_wall.hpp"
-#include "depthgrid/avoidance/frame_intake.hpp"
 #include "depthgrid/avoidance/search_distances.hpp"
+#include "depthgrid/robot/frame_intake.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/thrown_message.hpp"
 
@@ -30,7 +30,7 @@ TEST_F(Loop, RefusesSettingsThatDoNotFit) {
   const auto refused = [&](const LoopSettings& settings) {
     return thrown_message([&] { AvoidanceLoop(model_, history_, nothing_, settings); });
   };
-  const LoopSettings good = test::loop_settings(model_, nine_control_points(model_));
+  const LoopSettings good = test::loop_settings(model_, robot::nine_control_points(model_));
   EXPECT_EQ(refused(good), "");
   LoopSettings bad = good;
   bad.parts.clear();
@@ -60,7 +60,7 @@ class FailingArm final : public control::RobotPort {
 };
 
 TEST_F(Loop, CommandsNothingBeforeAStartThatSucceeded) {
-  const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
+  const LoopSettings settings = test::loop_settings(model_, robot::nine_control_points(model_));
   AvoidanceLoop loop(model_, history_, nothing_, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   FailingArm port(arm);
@@ -87,7 +87,7 @@ TEST_F(Loop, CommandsNothingBeforeAStartThatSucceeded) {
 }
 
 TEST_F(Loop, AddsNoPositionToTheHistoryWithoutAState) {
-  const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
+  const LoopSettings settings = test::loop_settings(model_, robot::nine_control_points(model_));
   robot::JointHistory history(7, 256, 1.5 * kPeriod, 0.0);  // a missing sample leaves a gap
   AvoidanceLoop loop(model_, history, nothing_, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
@@ -107,7 +107,7 @@ TEST_F(Loop, AddsNoPositionToTheHistoryWithoutAState) {
 }
 
 TEST_F(Loop, FollowsTheHexagonWithNothingNear) {
-  const LoopSettings settings = test::loop_settings(model_, nine_control_points(model_));
+  const LoopSettings settings = test::loop_settings(model_, robot::nine_control_points(model_));
   AvoidanceLoop loop(model_, history_, nothing_, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
@@ -122,7 +122,7 @@ TEST_F(Loop, FollowsTheHexagonWithNothingNear) {
 
 TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
   const Rig rig = test::one_camera();
-  LoopSettings settings = test::loop_settings(model_, moving_capsules(model_));
+  LoopSettings settings = test::loop_settings(model_, robot::moving_capsules(model_));
   settings.end_effector_limits = true;
   SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
   AvoidanceLoop loop(model_, history_, source, settings);
@@ -147,11 +147,11 @@ TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
 TEST_F(Loop, DoesNotAllocateWithTheSearch) {
   DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
   const Rig rig = test::one_camera();
-  LoopSettings settings = test::loop_settings(model_, moving_capsules(model_));
+  LoopSettings settings = test::loop_settings(model_, robot::moving_capsules(model_));
   settings.end_effector_limits = true;
   SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
   AvoidanceLoop loop(model_, history_, source, settings);
-  FrameIntake intake(rig, model_, history_, {});
+  robot::FrameIntake intake(rig, model_, history_, {});
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   const std::vector<std::uint16_t> wall(64UL * 48UL, 3500);
@@ -172,19 +172,19 @@ TEST_F(Loop, DoesNotAllocateWithTheSearch) {
 
 TEST(RobotParts, BeginWithTheFlangeAndLeaveTheBaseOut) {
   const robot::RobotModel model = robot::kuka_lwr4();
-  const auto points = nine_control_points(model);
+  const auto points = robot::nine_control_points(model);
   ASSERT_EQ(points.size(), 9U);
   EXPECT_EQ(points.front().link, model.link_index("lwr_7_link"));
   for (const robot::LinkCapsule& point : points) {
     EXPECT_EQ(point.capsule.radius_m, 0);
     EXPECT_EQ(point.capsule.a, point.capsule.b);
   }
-  const auto capsules = moving_capsules(model);
+  const auto capsules = robot::moving_capsules(model);
   ASSERT_EQ(capsules.size(), 6U);
   EXPECT_EQ(capsules.front().link, model.link_index("lwr_7_link"));
   EXPECT_EQ(capsules.back().link, model.link_index("lwr_2_link"));
-  EXPECT_EQ(moving_capsules(model, 1).size(), 7U);
-  EXPECT_THAT(thrown_message([&] { (void)moving_capsules(model, 9); }), HasSubstr("moved by 9 joints"));
+  EXPECT_EQ(robot::moving_capsules(model, 1).size(), 7U);
+  EXPECT_THAT(thrown_message([&] { (void)robot::moving_capsules(model, 9); }), HasSubstr("moved by 9 joints"));
 }
 
 }  // namespace

@@ -108,11 +108,11 @@ avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& mo
     controller.body.law = control::BodyLaw::approach_row;
     controller.body.gain_per_s = settings.approach_gain_per_s;
     controller.body.stop_m = settings.approach_stop_m;
-    result.parts = avoidance::moving_capsules(model);
+    result.parts = robot::moving_capsules(model);
     result.end_effector_limits = true;
   } else {
     controller.repulsion.form = control::RepulsionForm::letter;
-    result.parts = avoidance::nine_control_points(model);
+    result.parts = robot::nine_control_points(model);
   }
   return result;
 }

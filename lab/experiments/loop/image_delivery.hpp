@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "depthgrid/avoidance/frame_intake.hpp"
+#include "depthgrid/robot/frame_intake.hpp"
 #include "lab/experiments/loop/avoidance_cell.hpp"
 #include "lab/experiments/loop/avoidance_method.hpp"
 
@@ -43,7 +43,7 @@ class ImageDelivery {
   avoidance::DistanceSource& source_;
   const AvoidanceSettings& settings_;
   OnFrame on_frame_;
-  avoidance::FrameIntake intake_;
+  robot::FrameIntake intake_;
   simulation::SimulatedSensors sensors_;
   std::vector<DepthImage> ideal_m_;
   std::deque<Exposure> on_the_way_;

@@ -12,8 +12,8 @@
 #include <stop_token>
 #include <thread>
 
-#include "depthgrid/avoidance/frame_intake.hpp"
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "lab/experiments/timing/processor_time.hpp"
 
@@ -51,7 +51,7 @@ avoidance::LoopSettings settings_of(Method method, LoopParts parts, const robot:
                                     const AvoidanceSettings& settings) {
   avoidance::LoopSettings loop = loop_settings(method, model, settings);
   if (parts == LoopParts::nine_points) {
-    loop.parts = avoidance::nine_control_points(model);
+    loop.parts = robot::nine_control_points(model);
   }
   loop.evaluate_every = 1;
   return loop;
@@ -113,7 +113,7 @@ struct Parts {
   robot::RobotModel model;
   avoidance::LoopSettings loop_settings;
   robot::JointHistory history;
-  avoidance::FrameIntake intake;
+  robot::FrameIntake intake;
   std::unique_ptr<avoidance::DistanceSource> source;
   TimedSource timed;
   avoidance::AvoidanceLoop loop;

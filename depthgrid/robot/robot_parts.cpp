@@ -1,18 +1,18 @@
-#include "depthgrid/avoidance/robot_parts.hpp"
+#include "depthgrid/robot/robot_parts.hpp"
 
 #include <algorithm>
 
 #include "depthgrid/core/error.hpp"
 
-namespace depthgrid::avoidance {
+namespace depthgrid::robot {
 
 namespace {
 
-robot::LinkCapsule point_on(const robot::RobotModel& model, const char* link, double x, double y, double z) {
+LinkCapsule point_on(const RobotModel& model, const char* link, double x, double y, double z) {
   return {model.link_index(link), Capsule::point({x, y, z})};
 }
 
-int joints_above(const robot::RobotModel& model, std::size_t link) {
+int joints_above(const RobotModel& model, std::size_t link) {
   int joints = 0;
   for (std::optional<std::size_t> at = link; at; at = model.joint_of_link(*at).parent) {
     joints += model.joint_of_link(*at).joint ? 1 : 0;
@@ -22,7 +22,7 @@ int joints_above(const robot::RobotModel& model, std::size_t link) {
 
 }  // namespace
 
-std::vector<robot::LinkCapsule> nine_control_points(const robot::RobotModel& model) {
+std::vector<LinkCapsule> nine_control_points(const RobotModel& model) {
   return {point_on(model, "lwr_7_link", 0, 0, 0),    point_on(model, "lwr_6_link", 0, 0, 0),
           point_on(model, "lwr_5_link", 0, 0, 0.10), point_on(model, "lwr_5_link", 0, 0, 0),
           point_on(model, "lwr_4_link", 0, 0, 0.10), point_on(model, "lwr_4_link", 0, 0, 0),
@@ -30,9 +30,9 @@ std::vector<robot::LinkCapsule> nine_control_points(const robot::RobotModel& mod
           point_on(model, "lwr_2_link", 0, 0, 0.10)};
 }
 
-std::vector<robot::LinkCapsule> moving_capsules(const robot::RobotModel& model, int least_joints) {
-  std::vector<robot::LinkCapsule> parts;
-  for (const robot::LinkCapsule& item : robot::link_capsules(model)) {
+std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_joints) {
+  std::vector<LinkCapsule> parts;
+  for (const LinkCapsule& item : link_capsules(model)) {
     if (joints_above(model, item.link) >= least_joints) {
       parts.push_back(item);
     }
@@ -44,4 +44,4 @@ std::vector<robot::LinkCapsule> moving_capsules(const robot::RobotModel& model, 
   return parts;
 }
 
-}  // namespace depthgrid::avoidance
+}  // namespace depthgrid::robot

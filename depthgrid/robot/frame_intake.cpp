@@ -1,18 +1,18 @@
-#include "depthgrid/avoidance/frame_intake.hpp"
+#include "depthgrid/robot/frame_intake.hpp"
 
 #include <algorithm>
 
 #include "depthgrid/robot/link_capsules.hpp"
 
-namespace depthgrid::avoidance {
+namespace depthgrid::robot {
 
-FrameIntake::FrameIntake(const Rig& rig, const robot::RobotModel& model, const robot::JointHistory& history,
-                         const robot::ExposureSettings& settings)
+FrameIntake::FrameIntake(const Rig& rig, const RobotModel& model, const JointHistory& history,
+                         const ExposureSettings& settings)
     : frames_(rig.cameras.size()) {
-  const std::vector<robot::LinkCapsule> capsules = robot::link_capsules(model);
+  const std::vector<LinkCapsule> capsules = link_capsules(model);
   for (const RigCamera& camera : rig.cameras) {
     T_world_camera_.push_back(camera.T_world_camera);
-    robots_.push_back(std::make_unique<robot::RobotAtExposure>(model, history, camera.intrinsics, capsules, settings));
+    robots_.push_back(std::make_unique<RobotAtExposure>(model, history, camera.intrinsics, capsules, settings));
   }
 }
 
@@ -25,4 +25,4 @@ std::span<const Frame> FrameIntake::frames(std::span<const DepthView> images, do
   return frames_;
 }
 
-}  // namespace depthgrid::avoidance
+}  // namespace depthgrid::robot

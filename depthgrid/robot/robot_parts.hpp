@@ -6,16 +6,16 @@
 #include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/robot_model.hpp"
 
-namespace depthgrid::avoidance {
+namespace depthgrid::robot {
 
 /// Nine control points as the letter has them, for an arm of the LWR 4+'s links: the flange first, as end effector,
 /// then eight from the wrist to the shoulder. Throws Error when the model has no links of these names.
-[[nodiscard]] std::vector<robot::LinkCapsule> nine_control_points(const robot::RobotModel& model);
+[[nodiscard]] std::vector<LinkCapsule> nine_control_points(const RobotModel& model);
 
 /// The capsules that contain the links that move, the one farthest from the base first. Links that fewer than
 /// `least_joints` joints move are left out: the first link of an upright arm turns about its own axis, so it stays
 /// where it is, and yet what stands beside the base would limit the joint. Throws Error when nothing is left or a shape
 /// cannot be read.
-[[nodiscard]] std::vector<robot::LinkCapsule> moving_capsules(const robot::RobotModel& model, int least_joints = 2);
+[[nodiscard]] std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_joints = 2);
 
-}  // namespace depthgrid::avoidance
+}  // namespace depthgrid::robot
