@@ -19,7 +19,6 @@ set(depthgrid_package_of_PNG::PNG PNG)
 set(depthgrid_package_of_hwy::hwy hwy)
 set(depthgrid_package_of_urdfdom::urdfdom_model urdfdom)
 set(depthgrid_package_of_console_bridge::console_bridge console_bridge)
-set(depthgrid_package_of_orocos-kdl orocos_kdl)
 set(depthgrid_package_of_assimp::assimp assimp)
 
 set(depthgrid_components "")

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <kdl/segment.hpp>
 #include <limits>
 #include <utility>
 
@@ -13,47 +12,37 @@ namespace depthgrid::robot {
 
 namespace {
 
-KDL::Vector kdl(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-KDL::Frame kdl(const Pose& pose) {
-  const Eigen::Matrix3d& r = pose.linear();
-  return {KDL::Rotation(r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)),
-          kdl(Eigen::Vector3d(pose.translation()))};
-}
-
-Pose eigen(const KDL::Frame& frame) {
-  Pose pose = Pose::Identity();
-  for (int row = 0; row < 3; ++row) {
-    pose.translation()[row] = frame.p(row);
-    for (int column = 0; column < 3; ++column) {
-      pose.linear()(row, column) = frame.M(row, column);
-    }
-  }
-  return pose;
-}
-
 bool moves(const JointDescription& joint) { return joint.type != JointType::fixed; }
 
-/// A link's joint in two steps: a fixed frame whose z axis is the joint's, and KDL's segment from there to the link.
-/// KDL keeps the last angle of joints about other axes in the joint itself, which threads would then share.
-struct JointSegment {
-  KDL::Frame T_parent_axis;
-  KDL::Segment T_axis_link;  ///< at a joint position
+/// A link's joint: turns about z of a fixed frame, or slides along it.
+struct JointMotion {
+  JointType type = JointType::fixed;
+  Pose T_parent_axis = Pose::Identity();
+  Eigen::Matrix3d R_axis_link = Eigen::Matrix3d::Identity();  ///< at position 0
 
-  KDL::Frame pose(double position) const { return T_parent_axis * T_axis_link.pose(position); }
-  /// Of the link's origin, in the parent's frame.
-  KDL::Twist twist(double position, double speed) const { return T_parent_axis.M * T_axis_link.twist(position, speed); }
+  Pose pose(double position) const {
+    Pose T_parent_link = T_parent_axis;
+    Eigen::Matrix3d turned = R_axis_link;
+    if (type == JointType::prismatic) {
+      T_parent_link.translation() += position * T_parent_axis.linear().col(2);
+    } else if (type != JointType::fixed) {
+      const double c = std::cos(position);
+      const double s = std::sin(position);
+      turned.row(0) = c * R_axis_link.row(0) - s * R_axis_link.row(1);
+      turned.row(1) = s * R_axis_link.row(0) + c * R_axis_link.row(1);
+    }
+    T_parent_link.linear() = T_parent_axis.linear() * turned;
+    return T_parent_link;
+  }
 };
 
-JointSegment segment_of(const std::string& link, const JointDescription& joint) {
+JointMotion motion_of(const JointDescription& joint) {
   if (!moves(joint)) {
-    return {kdl(joint.T_parent_joint), KDL::Segment(link, KDL::Joint(joint.name, KDL::Joint::None))};
+    return {joint.type, joint.T_parent_joint};
   }
   Pose T_joint_axis = Pose::Identity();
   T_joint_axis.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
-  const auto type = joint.type == JointType::prismatic ? KDL::Joint::TransZ : KDL::Joint::RotZ;
-  return {kdl(joint.T_parent_joint * T_joint_axis),
-          KDL::Segment(link, KDL::Joint(joint.name, type), kdl(T_joint_axis.inverse()))};
+  return {joint.type, joint.T_parent_joint * T_joint_axis, T_joint_axis.linear().transpose()};
 }
 
 void check(const JointDescription& joint, const std::string& source) {
@@ -99,23 +88,17 @@ struct RobotModel::Parts {
   std::string source;
   std::vector<LinkDescription> links;
   std::vector<Joint> joints;
-  std::vector<LinkJoint> carriers;     ///< of each link
-  std::vector<JointSegment> segments;  ///< of each link; the root's is a fixed one
+  std::vector<LinkJoint> carriers;   ///< of each link
+  std::vector<JointMotion> motions;  ///< of each link; the root does not move
 
   explicit Parts(RobotDescription&& robot);
 
  private:
-  void add_root(const std::string& link);
-  void add_link(const std::string& link, std::size_t parent, const JointDescription& joint);
+  void add_link(std::size_t parent, const JointDescription& joint);
   void follow(LinkJoint& carrier, const JointDescription& joint) const;
 };
 
-void RobotModel::Parts::add_root(const std::string& link) {
-  carriers.emplace_back();
-  segments.push_back({KDL::Frame::Identity(), KDL::Segment(link)});
-}
-
-void RobotModel::Parts::add_link(const std::string& link, std::size_t parent, const JointDescription& joint) {
+void RobotModel::Parts::add_link(std::size_t parent, const JointDescription& joint) {
   check(joint, source);
   LinkJoint carrier;
   carrier.parent = parent;
@@ -128,7 +111,7 @@ void RobotModel::Parts::add_link(const std::string& link, std::size_t parent, co
     }
   }
   carriers.push_back(carrier);
-  segments.push_back(segment_of(link, joint));
+  motions.push_back(motion_of(joint));
 }
 
 /// Makes the carrier of a link follow the joint that `joint` mimics.
@@ -149,9 +132,10 @@ RobotModel::Parts::Parts(RobotDescription&& robot) : name(std::move(robot.name))
   for (const TreeLink& item : tree) {
     links.push_back(std::move(robot.links[item.link]));
     if (item.joint && item.parent) {
-      add_link(links.back().name, *item.parent, robot.joints[*item.joint]);
+      add_link(*item.parent, robot.joints[*item.joint]);
     } else {
-      add_root(links.back().name);
+      carriers.emplace_back();
+      motions.emplace_back();
     }
   }
   for (std::size_t i = 0; i < tree.size(); ++i) {  // when all joints have their numbers
@@ -161,10 +145,7 @@ RobotModel::Parts::Parts(RobotDescription&& robot) : name(std::move(robot.name))
   }
 }
 
-RobotModel::RobotModel(RobotDescription description) : parts_(std::make_unique<const Parts>(std::move(description))) {}
-RobotModel::~RobotModel() = default;
-RobotModel::RobotModel(RobotModel&&) noexcept = default;
-RobotModel& RobotModel::operator=(RobotModel&&) noexcept = default;
+RobotModel::RobotModel(RobotDescription description) : parts_(std::make_shared<const Parts>(std::move(description))) {}
 
 const std::string& RobotModel::name() const noexcept { return parts_->name; }
 const std::string& RobotModel::source() const noexcept { return parts_->source; }
@@ -190,7 +171,7 @@ bool RobotModel::link_poses(std::span<const double> q, const Pose& T_world_base,
     const LinkJoint& carrier = parts_->carriers[i];
     const Pose& T_world_parent = carrier.parent ? T_world_link[*carrier.parent] : T_world_base;
     const double position = carrier.joint ? carrier.multiplier * q[*carrier.joint] + carrier.offset : 0.0;
-    T_world_link[i] = T_world_parent * eigen(parts_->segments[i].pose(position));
+    T_world_link[i] = T_world_parent * parts_->motions[i].pose(position);
   }
   return true;
 }
@@ -207,13 +188,16 @@ bool RobotModel::jacobian(std::span<const double> q, std::span<const Pose> T_wor
     if (!carrier.joint) {
       continue;
     }
-    // Velocity of the segment's tip at unit joint speed, in the parent's frame; then of p, in the world's.
-    const double position = carrier.multiplier * q[*carrier.joint] + carrier.offset;
-    const KDL::Twist tip =
-        kdl(T_world_link[*carrier.parent]).M * parts_->segments[*i].twist(position, carrier.multiplier);
-    const KDL::Twist twist = tip.RefPoint(kdl(Eigen::Vector3d(p_world - T_world_link[*i].translation())));
-    for (int row = 0; row < 6; ++row) {
-      jacobian(row, static_cast<Eigen::Index>(*carrier.joint)) += twist(row);
+    // At unit speed of the joint.
+    const Eigen::Matrix3d& R_parent_axis = parts_->motions[*i].T_parent_axis.linear();
+    const Eigen::Vector3d axis_world =
+        T_world_link[*carrier.parent].linear() * (carrier.multiplier * R_parent_axis.col(2));
+    auto column = jacobian.col(static_cast<Eigen::Index>(*carrier.joint));
+    if (carrier.type == JointType::prismatic) {
+      column.head<3>() += axis_world;
+    } else {
+      column.head<3>() += axis_world.cross(p_world - T_world_link[*i].translation());
+      column.tail<3>() += axis_world;
     }
   }
   return true;

@@ -38,7 +38,8 @@ struct LinkJoint {
 /// joint.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/// Never changes after construction; const members may be called from many threads at once and allocate nothing.
+/// Never changes after construction; const members may be called from many threads at once and allocate nothing. Copies
+/// share what they hold.
 /// Links are numbered depth first from the root, children in the order of their joints' names, so parents come first;
 /// joints in the order in which they are met on this way. For a serial arm that is from the base to the tip.
 class RobotModel {
@@ -47,11 +48,6 @@ class RobotModel {
   /// not a number, the lower one exceeds the upper one, a speed is not positive, an axis is zero, or a mimic joint
   /// follows one that is not there or follows another itself.
   explicit RobotModel(RobotDescription description);
-  ~RobotModel();
-  RobotModel(RobotModel&&) noexcept;
-  RobotModel& operator=(RobotModel&&) noexcept;
-  RobotModel(const RobotModel&) = delete;
-  RobotModel& operator=(const RobotModel&) = delete;
 
   [[nodiscard]] const std::string& name() const noexcept;
   [[nodiscard]] const std::string& source() const noexcept;
@@ -75,7 +71,7 @@ class RobotModel {
 
  private:
   struct Parts;
-  std::unique_ptr<const Parts> parts_;
+  std::shared_ptr<const Parts> parts_;
 };
 
 }  // namespace depthgrid::robot
