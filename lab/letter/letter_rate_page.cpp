@@ -98,12 +98,13 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
       const double cells_ms = milliseconds(*two, 0.5) - pixels_ms;
       const double cells = static_cast<double>(two->count.cells) / static_cast<double>(two->evaluation_s.size()) -
                            static_cast<double>(one->count.cells) / static_cast<double>(one->evaluation_s.size());
-      page << "- Where its time goes (medians): " << pixels_ms << " ms visit the pixels, what one camera alone takes; "
-           << cells_ms << " ms judge " << cells / 1e6 << " million cells with the other camera, "
-           << 1e6 * cells_ms / cells << " ns a cell. `letter, minimum` visits fewer of both and reaches "
+      page << "\n- Where its time goes (medians): " << pixels_ms
+           << " ms visit the pixels, what one camera alone takes; " << cells_ms << " ms judge " << cells / 1e6
+           << " million cells with the other camera, " << 1e6 * cells_ms / cells
+           << " ns a cell. `letter, minimum` visits fewer of both and reaches "
            << static_cast<int>(find(rows, "letter, minimum", 2) != nullptr ? find(rows, "letter, minimum", 2)->rate()
                                                                            : 0)
-           << " a second.\n- The clock of a shared machine varies: compare the rows of one run with each other, not "
+           << " a second.\n\n- The clock of a shared machine varies: compare the rows of one run with each other, not "
               "runs.\n";
     }
   }
@@ -111,7 +112,7 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
     const RateRow* few = find(rows, name, 2);
     const RateRow* many = find(rows, name, 8);
     if (few != nullptr && many != nullptr) {
-      page << "- " << name << ": 8 cameras take " << few->rate() / many->rate()
+      page << "\n- " << name << ": 8 cameras take " << few->rate() / many->rate()
            << " times the time of 2, for 7 times the secondary cameras.\n";
     }
   }
