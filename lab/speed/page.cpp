@@ -1,24 +1,88 @@
 #include "lab/speed/page.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "lab/speed/number_text.hpp"
 #include "lab/speed/page_parts.hpp"
 #include "lab/speed/page_text.hpp"
+#include "report/markdown_table.hpp"
 
 namespace depthgrid::lab {
+namespace {
 
-void write_page(const std::string& file, const std::string& images, const Report& report) {
-  std::ostringstream page;
-  page << kIntroduction;
+void write_about(std::ostream& page, const Report& report) {
   for (const char* key : {"machine", "run"}) {
     const auto found = report.about.find(key);
     if (found != report.about.end()) {
       page << found->second << "\n\n";
     }
   }
+}
+
+/// The search on the three workloads, two cameras.
+void write_cycle(std::ostream& page, const Report& report) {
+  std::vector<std::string> head{"two cameras"};
+  std::vector<std::string> rate{"nine points, a second"};
+  std::vector<std::string> cycle{"cycle: two new images and nine points, ms (median)"};
+  std::vector<std::string> eight{"the same with eight cameras"};
+  std::vector<std::string> over{"largest over-estimate, mm"};
+  for (const auto& [key, title] : kWorkloadNames) {
+    const auto number = [&, group = std::string("ours, ") + key](const char* row, double cameras, const char* name) {
+      return report.number(name, group, row, {{"cameras", cameras}});
+    };
+    head.emplace_back(title);
+    rate.push_back(digits3(number("nine points", 2, "calls_per_s")));
+    cycle.push_back(milliseconds(number("cycle", 2, "call_median_s")));
+    eight.push_back(milliseconds(number("cycle", 8, "call_median_s")));
+    over.push_back(digits3(1e3 * number("errors", 2, "over_max_m")));
+  }
+  report::MarkdownTable table(head);
+  for (const auto& row : {rate, cycle, eight, over}) {
+    table.row(row);
+  }
+  page << table.text() << "\n\n";
+}
+
+/// What would be used instead, two cameras, robot masked.
+void write_peers(std::ostream& page, const Report& report) {
+  report::MarkdownTable table({"two cameras, robot masked", "cycle, ms", "in times of ours", "nine points alone, ms",
+                               "occluded space counts", "largest over-estimate, mm"});
+  for (const char* name :
+       {"search", "letter, hybrid", "letter, minimum", "corrected, minimum", "maximum of the cameras' scans",
+        "scan of the cell's cloud", "nanoflann, cell", "PCL VoxelGrid 1 cm + KdTreeFLANN", "OctoMap 5 cm + EDT"}) {
+    const Record* row = report.find("side by side, W", name, {{"cameras", 2}});
+    if (row != nullptr) {
+      const Record& r = *row;
+      table.row({name, milliseconds(r["cycle_median_s"]), digits3(r["cycle_median_s"] / r["our_cycle_median_s"]),
+                 milliseconds(r["nine_median_s"]), r["counts_occluded"] != 0 ? "yes" : "no",
+                 millimetres(r["over_max_m"])});
+    }
+  }
+  page << table.text() << "\n\n";
+}
+
+std::string summary(const std::string& images, const Report& report) {
+  std::ostringstream page;
+  page << kSummaryIntroduction;
+  write_about(page, report);
+  write_cycle(page, report);
+  const std::vector<Goal> all = goals(report);
+  const auto missed = std::count_if(all.begin(), all.end(), [](const Goal& goal) { return goal.missed(); });
+  page << missed << " of " << all.size() << kSummaryGoals;
+  write_peers(page, report);
+  page << kSummaryPeers << "![Time against the number of cameras](" << images << "/benchmark-cameras.png)\n";
+  return page.str();
+}
+
+std::string details(const std::string& images, const Report& report) {
+  std::ostringstream page;
+  page << kDetailsIntroduction;
+  write_about(page, report);
   const std::vector<Goal> all = goals(report);
   write_goals(page, all);
   write_misses(page, all, report);
@@ -34,12 +98,29 @@ void write_page(const std::string& file, const std::string& images, const Report
     page << "![" << text << "](" << images << "/benchmark-" << name << ".png)\n\n";
   }
   page << kMethod << '\n' << kSetups;
+  return page.str();
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file);
-  out << page.str();
+  out << text;
   out.close();
   if (!out) {
-    fail(file, ": cannot be written");
+    fail(file.string(), ": cannot be written");
   }
+}
+
+}  // namespace
+
+void write_page(const std::string& file, const std::string& images, const Report& report) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(file).parent_path() / "docs";
+  std::error_code failed;  // then writing says so
+  fs::create_directories(folder, failed);
+  const fs::path plots(images);
+  write(file, summary(images, report));
+  write(folder / "benchmark-search.md",
+        details(plots.is_absolute() ? images : plots.lexically_relative("docs").string(), report));
 }
 
 }  // namespace depthgrid::lab

@@ -1,4 +1,4 @@
-// BENCHMARK.md, from the records of one run.
+// BENCHMARK.md, one screen, and docs/benchmark-search.md with everything, from the records of one run.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace depthgrid::lab {
 
-/// `images` is the plots' folder as seen from the page. Throws Error when the file cannot be written.
+/// Writes `file`, and docs/benchmark-search.md beside it. `images` is the plots' folder as seen from `file`. Throws
+/// Error when one cannot be written.
 void write_page(const std::string& file, const std::string& images, const Report& report);
 
 }  // namespace depthgrid::lab

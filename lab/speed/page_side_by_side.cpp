@@ -63,11 +63,11 @@ void write_quicker(std::ostream& page, const Report& report) {
       if (far > 2) {
         list << "; with nothing near its query takes " << digits3(far) << " times as long";
       }
-      list << ".\n";
+      list << ".\n\n";
     }
   }
   page << "### What is quicker than ours, and at what price\n\nTwo cameras; cycle, and query of nine points alone:\n\n"
-       << (list.str().empty() ? "Nothing.\n" : list.str()) << '\n';
+       << (list.str().empty() ? "Nothing.\n\n" : list.str());
 }
 
 }  // namespace
