@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "depthgrid/files/file_replacement.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 namespace depthgrid::program {
 
@@ -24,7 +24,7 @@ class OutputFile {
 
  private:
   std::string path_;
-  std::optional<files::FileReplacement> replacement_;  ///< none: standard output
+  std::optional<FileReplacement> replacement_;  ///< none: standard output
   std::FILE* stream_ = stdout;
 };
 

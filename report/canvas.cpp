@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/files/file_replacement.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 namespace depthgrid::report {
 
@@ -282,14 +282,14 @@ void Canvas::save_png(const std::filesystem::path& file) const {
   require_success(cairo_status(surface_->context.get()), file);
   const SurfacePointer image(cairo_image_surface_create(CAIRO_FORMAT_RGB24, surface_->width_px, surface_->height_px));
   surface_->play(image.get());
-  files::FileReplacement target(file);
+  FileReplacement target(file);
   require_success(cairo_surface_write_to_png_stream(image.get(), write_bytes, target.stream()), file);
   target.commit();
 }
 
 void Canvas::save_svg(const std::filesystem::path& file) const {
   require_success(cairo_status(surface_->context.get()), file);
-  files::FileReplacement target(file);
+  FileReplacement target(file);
   const SurfacePointer page(
       cairo_svg_surface_create_for_stream(write_bytes, target.stream(), surface_->width_px, surface_->height_px));
   surface_->play(page.get());

@@ -10,7 +10,7 @@
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/files/file_replacement.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 #include "depthgrid/files/png.hpp"
 
 namespace depthgrid::files {

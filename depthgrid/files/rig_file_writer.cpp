@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/files/file_replacement.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 #include "depthgrid/files/rig_file.hpp"
 
 namespace depthgrid::files {

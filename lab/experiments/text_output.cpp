@@ -5,12 +5,12 @@
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/files/file_replacement.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 namespace depthgrid::experiments {
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
-  files::FileReplacement replacement(file);
+  FileReplacement replacement(file);
   if (std::fwrite(text.data(), 1, text.size(), replacement.stream()) != text.size()) {
     fail("cannot write ", file.string(), ": ", std::generic_category().message(errno));
   }

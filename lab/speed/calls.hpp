@@ -7,7 +7,7 @@
 
 #include "lab/peers/search_peer.hpp"
 #include "lab/speed/record.hpp"
-#include "lab/speed/samples.hpp"
+#include "lab/measure/samples.hpp"
 
 namespace depthgrid::lab {
 

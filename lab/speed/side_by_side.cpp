@@ -6,7 +6,7 @@
 
 #include "lab/peers/search_peer.hpp"
 #include "lab/speed/memory.hpp"
-#include "lab/speed/samples.hpp"
+#include "lab/measure/samples.hpp"
 
 namespace depthgrid::lab {
 namespace {

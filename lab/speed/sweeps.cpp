@@ -5,7 +5,7 @@
 
 #include "lab/peers/lattice_peer.hpp"
 #include "lab/peers/search_peer.hpp"
-#include "lab/speed/samples.hpp"
+#include "lab/measure/samples.hpp"
 
 namespace depthgrid::lab {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "depthgrid/grid/map/machine_memory.hpp"
-#include "depthgrid/grid/map/piecework.hpp"
+#include "depthgrid/grid/map/parallel_for.hpp"
 #include "grid/map_rigs.hpp"
 
 namespace depthgrid::grid {

@@ -9,7 +9,7 @@
 
 #include "depthgrid/grid/map/machine_memory.hpp"
 #include "depthgrid/grid/map/map_calibration.hpp"
-#include "depthgrid/grid/map/piecework.hpp"
+#include "depthgrid/grid/map/parallel_for.hpp"
 #include "depthgrid/grid/map/pixel_list_rays.hpp"
 
 namespace depthgrid::grid {

@@ -10,7 +10,7 @@
 #include "lab/experiments/stage/distance_method.hpp"
 #include "lab/experiments/stage/point_truth.hpp"
 #include "lab/experiments/stage/rig_width.hpp"
-#include "lab/experiments/timing/processor_time.hpp"
+#include "lab/measure/clocks.hpp"
 
 namespace depthgrid::experiments {
 

@@ -15,7 +15,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
-#include "lab/experiments/timing/processor_time.hpp"
+#include "lab/measure/clocks.hpp"
 
 namespace depthgrid::experiments {
 

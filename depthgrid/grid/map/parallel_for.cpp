@@ -1,4 +1,4 @@
-#include "depthgrid/grid/map/piecework.hpp"
+#include "depthgrid/grid/map/parallel_for.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "depthgrid/files/file_replacement.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 #include <unistd.h>
 
@@ -11,7 +11,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/file_target.hpp"
 
-namespace depthgrid::files {
+namespace depthgrid {
 namespace {
 
 /// Distinct for every file of this process and, by its id, between processes that write into one folder.
@@ -56,4 +56,4 @@ void FileReplacement::commit() {
   }
 }
 
-}  // namespace depthgrid::files
+}  // namespace depthgrid

@@ -1,4 +1,4 @@
-#include "lab/speed/samples.hpp"
+#include "lab/measure/samples.hpp"
 
 #include <algorithm>
 #include <cmath>

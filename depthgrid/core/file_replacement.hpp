@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-namespace depthgrid::files {
+namespace depthgrid {
 
 /// Writes to a temporary name in the same folder; commit() renames it, the destructor removes it if it never came to
 /// that. So that a full disk or an error half-way leaves what was there before.
@@ -27,4 +27,4 @@ class FileReplacement {
   std::FILE* stream_ = nullptr;
 };
 
-}  // namespace depthgrid::files
+}  // namespace depthgrid
