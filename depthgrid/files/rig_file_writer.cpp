@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/core/file_replacement.hpp"
 #include "depthgrid/files/rig_file.hpp"
+#include "depthgrid/files/text_file.hpp"
 
 namespace depthgrid::files {
 namespace {
@@ -197,11 +197,6 @@ std::string to_json(const RigFile& rig_file) {
   return text;
 }
 
-void save_rig(const RigFile& rig_file, const std::filesystem::path& file) {
-  const std::string text = to_json(rig_file);
-  FileReplacement target(file);
-  static_cast<void>(std::fwrite(text.data(), 1, text.size(), target.stream()));  // commit() sees a failure
-  target.commit();
-}
+void save_rig(const RigFile& rig_file, const std::filesystem::path& file) { write_text_file(file, to_json(rig_file)); }
 
 }  // namespace depthgrid::files

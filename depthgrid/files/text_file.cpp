@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 namespace depthgrid::files {
 
@@ -29,6 +30,12 @@ std::string read_text_file(const std::filesystem::path& file) {
     refuse(errno);  // a folder ends here
   }
   return text;
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+  FileReplacement target(file);
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), target.stream()));  // commit() sees a failure
+  target.commit();
 }
 
 }  // namespace depthgrid::files

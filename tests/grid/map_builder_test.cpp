@@ -188,20 +188,20 @@ TEST(MapBuilder, NumbersGoThereAndBack) {
   EXPECT_THROW(calibration_from_numbers(values, "test"), Error);
 }
 
-TEST(Piecework, DoesEveryPieceOnceAndPassesErrorsOn) {
+TEST(ParallelFor, DoesEveryPieceOnceAndPassesErrorsOn) {
   std::vector<std::atomic<int>> done(1000);
-  EXPECT_TRUE(do_pieces(done.size(), 4, [&](std::size_t i) { ++done[i]; }, {}));
+  EXPECT_TRUE(parallel_for(done.size(), 4, [&](std::size_t i) { ++done[i]; }, {}));
   for (const std::atomic<int>& times : done) {
     EXPECT_EQ(times, 1);
   }
-  EXPECT_TRUE(do_pieces(0, 4, [](std::size_t) {}, {}));
-  EXPECT_THROW(do_pieces(100, 4,
-                         [](std::size_t i) {
-                           if (i == 7) {
-                             throw std::logic_error("mine");
-                           }
-                         },
-                         {}),
+  EXPECT_TRUE(parallel_for(0, 4, [](std::size_t) {}, {}));
+  EXPECT_THROW(parallel_for(100, 4,
+                            [](std::size_t i) {
+                              if (i == 7) {
+                                throw std::logic_error("mine");
+                              }
+                            },
+                            {}),
                std::logic_error);
 }
 

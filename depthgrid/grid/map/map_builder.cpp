@@ -40,7 +40,7 @@ class Reporter {
 
   void pass(std::size_t rows, const std::function<void(std::size_t)>& work) {
     const bool complete =
-        do_pieces(rows, settings_.threads, work, [this](std::size_t done) { return report(before_ + done); });
+        parallel_for(rows, settings_.threads, work, [this](std::size_t done) { return report(before_ + done); });
     if (!complete) {
       throw MapBuildCancelled("depth grid map: building was cancelled");
     }

@@ -5,15 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
-#include <utility>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/core/file_target.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 namespace depthgrid::grid {
 namespace {
@@ -26,14 +23,14 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   Descriptor(Descriptor&&) = delete;
   Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() { close(); }
+  ~Descriptor() {
+    if (valid()) {
+      ::close(value_);
+    }
+  }
 
   [[nodiscard]] int get() const noexcept { return value_; }
   [[nodiscard]] bool valid() const noexcept { return value_ >= 0; }
-  bool close() noexcept {
-    const int value = std::exchange(value_, -1);
-    return value < 0 || ::close(value) == 0;
-  }
 
  private:
   int value_;
@@ -42,21 +39,6 @@ class Descriptor {
 [[noreturn]] void fail_with_reason(const std::string& path, const char* what) {
   const int code = errno;
   fail("file '", path, "': cannot ", what, ": ", std::generic_category().message(code));
-}
-
-bool write_all(int descriptor, std::span<const std::byte> bytes) noexcept {
-  constexpr std::size_t kOnce = std::size_t{1} << 30U;
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), std::min(bytes.size(), kOnce));
-    if (written < 0 && errno == EINTR) {
-      continue;
-    }
-    if (written <= 0) {
-      return false;
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
-  return true;
 }
 
 }  // namespace
@@ -88,23 +70,16 @@ MappedFile::~MappedFile() {
 }
 
 void write_file_whole(const std::string& path, std::span<const std::span<const std::byte>> parts) {
-  const std::string target = replaceable_file(path).string();
-  static std::atomic<unsigned> serial{0};
-  const std::string temporary = target + ".part-" + std::to_string(::getpid()) + "-" + std::to_string(serial++);
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the system's own interface
-  Descriptor descriptor(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (!descriptor.valid()) {
+  FileReplacement target(path);
+  for (const std::span<const std::byte> part : parts) {
+    if (std::fwrite(part.data(), 1, part.size(), target.stream()) != part.size()) {
+      fail_with_reason(path, "write");
+    }
+  }
+  if (std::fflush(target.stream()) != 0 || ::fsync(::fileno(target.stream())) != 0) {
     fail_with_reason(path, "write");
   }
-  const bool written = std::all_of(parts.begin(), parts.end(),
-                                   [&](std::span<const std::byte> part) { return write_all(descriptor.get(), part); });
-  if (!written || ::fsync(descriptor.get()) != 0 || !descriptor.close() ||
-      std::rename(temporary.c_str(), target.c_str()) != 0) {
-    const int code = errno;
-    ::unlink(temporary.c_str());
-    errno = code;
-    fail_with_reason(path, "write");
-  }
+  target.commit();
 }
 
 }  // namespace depthgrid::grid

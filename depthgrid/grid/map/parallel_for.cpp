@@ -105,8 +105,8 @@ class Workers {
 
 }  // namespace
 
-bool do_pieces(std::size_t pieces, int threads, const std::function<void(std::size_t)>& work,
-               const std::function<bool(std::size_t)>& report) {
+bool parallel_for(std::size_t pieces, int threads, const std::function<void(std::size_t)>& work,
+                  const std::function<bool(std::size_t)>& report) {
   const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : std::thread::hardware_concurrency();
   Pieces shared(pieces, work);
   std::size_t done = 0;
