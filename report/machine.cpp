@@ -56,14 +56,20 @@ std::string compiler() {
 
 }  // namespace
 
-std::string machine_line(std::string_view used) {
+std::string today() { return now_utc().substr(0, 10); }
+
+std::string now_utc() {
   const std::time_t now = std::time(nullptr);
   std::tm date{};
   gmtime_r(&now, &date);
-  std::array<char, 16> text{};
-  (void)std::strftime(text.data(), text.size(), "%Y-%m-%d", &date);
+  std::array<char, 32> text{};
+  (void)std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &date);
+  return text.data();
+}
+
+std::string machine_line(std::string_view used) {
   return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores (" + instruction_sets() +
-         "), " + std::string(used) + " used; built for " + built_for() + " by " + compiler() + "; " + text.data();
+         "), " + std::string(used) + " used; built for " + built_for() + " by " + compiler() + "; " + today();
 }
 
 }  // namespace depthgrid::report

@@ -1,6 +1,8 @@
-// Numbers as text, independent of the locale.
+// Numbers as text, independent of the locale: exact ones for programs, short ones for people.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace depthgrid::report {
@@ -13,5 +15,18 @@ std::string micro_text(double value);
 
 /// Six decimals, rounded towards minus infinity, so that a lower bound stays one. NaN gives an empty text.
 std::string micro_text_down(double value);
+
+/// With so many digits after the point; "-" when not finite.
+[[nodiscard]] std::string fixed(double value, int digits = 0);
+/// A share as "12.3 %".
+[[nodiscard]] std::string percent(double share, int digits = 1);
+/// Part of a whole, the same way; "-" when the whole is 0.
+[[nodiscard]] std::string percent_of(double part, double whole, int digits = 1);
+/// Three significant digits without exponent: "0.0123", "4.56", "12 300"; "-" when not finite.
+[[nodiscard]] std::string three_digits(double value);
+/// Metres as whole millimetres with their sign: "+12", "-3", "0".
+[[nodiscard]] std::string signed_millimetres(double value_m);
+/// 1234567 as "1 234 567"; numbers of at most `together` digits stay together.
+[[nodiscard]] std::string grouped(std::int64_t value, std::size_t together = 4);
 
 }  // namespace depthgrid::report

@@ -38,6 +38,11 @@ ProgressLine::~ProgressLine() {
   }
 }
 
+void ProgressLine::update(std::size_t done, std::string label) {
+  label_ = std::move(label);
+  update(done);
+}
+
 void ProgressLine::update(std::size_t done) {
   const auto now = Clock::now();
   if (!terminal_ || total_ == 0 || (shown_ && now - last_shown_ < std::chrono::milliseconds(100))) {

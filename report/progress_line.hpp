@@ -20,6 +20,8 @@ class ProgressLine {
 
   /// `done` of the total steps are behind us.
   void update(std::size_t done);
+  /// The same, under another label from now on.
+  void update(std::size_t done, std::string label);
 
  private:
   using Clock = std::chrono::steady_clock;
