@@ -1,32 +1,15 @@
 #include "lab/campaign/soundness_page.hpp"
 
-#include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <sstream>
-#include <vector>
 
-#include "depthgrid/core/error.hpp"
+#include "report/marked_page.hpp"
+#include "report/number_text.hpp"
 
 namespace depthgrid::lab {
 namespace {
 
-/// 1234567 as "1 234 567".
-std::string grouped(std::int64_t value) {
-  std::string digits = std::to_string(value);
-  for (std::size_t at = digits.size(); at > 3;) {
-    at -= 3;
-    digits.insert(at, " ");
-  }
-  return digits;
-}
-
-std::string number(double value, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return std::isnan(value) ? "-" : text;
-}
+/// Every three digits, small numbers too.
+std::string grouped(std::int64_t value) { return report::grouped(value, 3); }
 
 std::string images_of(const Tally& tally) {
   const auto size = [](int width_px) { return std::to_string(width_px) + "x" + std::to_string(width_px * 3 / 4); };
@@ -52,10 +35,11 @@ void write_shortfalls(const Tally& tally, std::ostream& out) {
       << " | answers | median | 99 % | largest | largest / resolution |\n|---|---|---|---|---|---|\n";
   for (const auto& [name, histogram] : tally.shortfall_m) {
     const auto all = tally.shortfall_resolutions.find(name);
-    out << "| " << name << " | " << grouped(histogram.count()) << " | " << number(1e3 * histogram.quantile(0.5), "%.2f")
-        << " mm | " << number(1e3 * histogram.quantile(0.99), "%.1f") << " mm | "
-        << number(1e3 * histogram.maximum(), "%.1f") << " mm | "
-        << (all != tally.shortfall_resolutions.end() ? number(all->second.maximum(), "%.2f") : "-") << " |\n";
+    out << "| " << name << " | " << grouped(histogram.count()) << " | "
+        << report::fixed(1e3 * histogram.quantile(0.5), 2) << " mm | "
+        << report::fixed(1e3 * histogram.quantile(0.99), 1) << " mm | " << report::fixed(1e3 * histogram.maximum(), 1)
+        << " mm | " << (all != tally.shortfall_resolutions.end() ? report::fixed(all->second.maximum(), 2) : "-")
+        << " |\n";
   }
   out << '\n';
 }
@@ -75,7 +59,7 @@ void write_counts(const Tally& tally, std::ostream& out) {
   for (const auto& [first, end] : tally.seeds.ranges()) {
     out << ' ' << first << " to " << end - 1 << ',';
   }
-  out << ' ' << number(tally.seconds / 60, "%.0f") << " minutes of one core. Source:";
+  out << ' ' << report::fixed(tally.seconds / 60) << " minutes of one core. Source:";
   for (const auto& [code, queries] : tally.queries_by_code) {
     out << ' ' << (code.empty() ? "unknown" : code) << " (" << grouped(queries) << " queries)";
   }
@@ -104,21 +88,7 @@ std::string soundness_tables(const CampaignState& state) {
 }
 
 void write_tables(const std::string& page, const std::string& tables) {
-  std::ifstream in(page);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  const std::size_t begin = text.find(kTablesBegin);
-  const std::size_t end = text.find(kTablesEnd);
-  if (!in || begin == std::string::npos || end == std::string::npos || end < begin) {
-    fail(page, ": cannot be read, or lacks the line '", kTablesBegin, "' and behind it '", kTablesEnd, "'");
-  }
-  const std::size_t from = begin + std::string(kTablesBegin).size();
-  text.replace(from, end - from, "\n\n" + tables);
-  std::ofstream out(page);
-  out << text;
-  out.close();
-  if (!out) {
-    fail(page, ": cannot be written");
-  }
+  report::write_between(page, kTablesBegin, kTablesEnd, "\n" + tables);
 }
 
 }  // namespace depthgrid::lab

@@ -14,7 +14,7 @@ namespace depthgrid::lab {
 /// be read or written or lacks a marker.
 void write_tables(const std::string& page, const std::string& tables);
 
-inline constexpr const char* kTablesBegin = "<!-- tables, written by depthgrid_search_campaign -->";
+inline constexpr const char* kTablesBegin = "<!-- tables, written by depthgrid-lab campaign -->";
 inline constexpr const char* kTablesEnd = "<!-- end of the tables -->";
 
 }  // namespace depthgrid::lab

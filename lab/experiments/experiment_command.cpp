@@ -1,5 +1,3 @@
-#include "lab/experiments/experiment_command.hpp"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -10,12 +8,13 @@
 #include <string>
 #include <system_error>
 
+#include "lab/commands.hpp"
 #include "lab/experiments/experiment.hpp"
 #include "program/output_file.hpp"
 #include "program/usage_error.hpp"
 #include "report/progress_line.hpp"
 
-namespace depthgrid::program {
+namespace depthgrid::lab {
 
 namespace {
 
@@ -27,7 +26,7 @@ struct ExperimentOptions {
 };
 
 void say(const std::string& text) {
-  OutputFile output("-");
+  program::OutputFile output("-");
   output.write(text);
   output.commit();
 }
@@ -44,7 +43,7 @@ std::string list() {
 
 /// What would repeat the run.
 std::string command_line(const ExperimentOptions& options) {
-  std::string line = "depthgrid experiment " + options.name + " --seed " + std::to_string(options.experiment.seed);
+  std::string line = "depthgrid-lab experiment " + options.name + " --seed " + std::to_string(options.experiment.seed);
   if (options.experiment.quick) {
     line += " --quick";
   }
@@ -63,7 +62,7 @@ const experiments::Experiment& chosen(const ExperimentOptions& options) {
     experiments::validate(options.experiment);
     return experiments::experiment(options.name);
   } catch (const Error& error) {
-    throw UsageError(error.what());
+    throw program::UsageError(error.what());
   }
 }
 
@@ -73,7 +72,7 @@ void run(ExperimentOptions options) {
     return;
   }
   if (options.name.empty()) {
-    fail_usage("experiment needs a NAME; depthgrid experiment --list shows them");
+    program::fail_usage("experiment needs a NAME; depthgrid-lab experiment --list shows them");
   }
   const experiments::Experiment& experiment = chosen(options);
   options.experiment.out = options.out.value_or("experiment-" + options.name);
@@ -96,8 +95,10 @@ void run(ExperimentOptions options) {
 
 void add_experiment_command(CLI::App& app) {
   const auto options = std::make_shared<ExperimentOptions>();
-  CLI::App* const command =
-      app.add_subcommand("experiment", "the letter's experiments and further ones in the simulated workcell");
+  CLI::App* const command = app.add_subcommand(
+      "experiment",
+      "the letter's experiments and further ones in the simulated workcell: minutes to hours, --quick "
+      "seconds to minutes");
   command->add_option("NAME", options->name, "which one");
   command->add_flag("--list", options->list, "name the experiments and stop");
   command->add_option("--out", options->out,
@@ -116,8 +117,8 @@ void add_experiment_command(CLI::App& app) {
   command->add_option("--frames", options->experiment.frames, "instants of time (default: the experiment's own)");
   command->add_option("--width", options->experiment.width_px,
                       "width of the depth images in pixels, which are 4:3 (default: the experiment's own)");
-  command->footer("Example:\n  depthgrid experiment shadow --quick --out shadow");
+  command->footer("Example:\n  depthgrid-lab experiment shadow --quick --out shadow");
   command->callback([options] { run(*options); });
 }
 
-}  // namespace depthgrid::program
+}  // namespace depthgrid::lab

@@ -2,13 +2,11 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
-#include <ctime>
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
-#include "lab/experiments/text_output.hpp"
+#include "depthgrid/files/text_file.hpp"
 #include "report/machine.hpp"
 
 namespace depthgrid::experiments {
@@ -16,15 +14,6 @@ namespace depthgrid::experiments {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string now_utc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm date{};
-  gmtime_r(&now, &date);
-  std::array<char, 32> text{};
-  (void)std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &date);
-  return text.data();
-}
 
 /// Throws Error unless files can be created in it once it is there.
 void check_folder(const fs::path& folder) {
@@ -66,11 +55,11 @@ ExperimentReport::ExperimentReport(const Experiment& experiment, const Options& 
   about_["command"] = options.command_line;
   about_["seed"] = options.seed;
   about_["quick"] = options.quick;
-  about_["started"] = now_utc();
+  about_["started"] = report::now_utc();
   about_["machine"] = report::machine_line(experiment.cores_used);
   markdown_ = "# " + std::string(experiment.name) + "\n";
   if (!options.command_line.empty()) {
-    paragraph("`" + options.command_line + "`, " + now_utc() + (options.quick ? ", a quick run." : "."));
+    paragraph("`" + options.command_line + "`, " + report::now_utc() + (options.quick ? ", a quick run." : "."));
   }
   paragraph("Machine: " + report::machine_line(experiment.cores_used) + ".");
 }
@@ -99,8 +88,8 @@ void ExperimentReport::write() const {
   nlohmann::ordered_json all;
   all["about"] = about_;
   all["figures"] = figures_;
-  write_text(folder_ / "figures.json", all.dump(2) + "\n");
-  write_text(folder_ / "report.md", markdown_);
+  files::write_text_file(folder_ / "figures.json", all.dump(2) + "\n");
+  files::write_text_file(folder_ / "report.md", markdown_);
 }
 
 std::string ExperimentReport::text() const {

@@ -1,11 +1,10 @@
 #include "lab/letter/letter_campaign.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
 
 #include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/map/parallel_for.hpp"
 #include "reference/reference.hpp"
 
 namespace depthgrid::lab {
@@ -69,24 +68,14 @@ std::vector<PointErrors> one_scene(const CampaignSettings& settings, int scene) 
 
 }  // namespace
 
-std::vector<PointErrors> run_campaign(const CampaignSettings& settings, const std::function<void(int, int)>& progress) {
+std::vector<PointErrors> run_campaign(const CampaignSettings& settings,
+                                      const std::function<void(std::size_t, std::size_t)>& progress) {
   std::vector<std::vector<PointErrors>> scenes(static_cast<std::size_t>(settings.scenes));
-  std::atomic<int> next{0};
-  const auto work = [&](bool reports) {
-    for (int scene = next++; scene < settings.scenes; scene = next++) {
-      scenes[static_cast<std::size_t>(scene)] = one_scene(settings, scene);
-      if (reports) {
-        progress(std::min(next.load(), settings.scenes), settings.scenes);
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> threads;
-    for (int i = 1; i < settings.threads; ++i) {
-      threads.emplace_back(work, false);
-    }
-    work(true);
-  }
+  const auto work = [&](std::size_t scene) { scenes[scene] = one_scene(settings, static_cast<int>(scene)); };
+  (void)grid::parallel_for(scenes.size(), settings.threads, work, [&](std::size_t done) {
+    progress(done, scenes.size());
+    return true;
+  });
   std::vector<PointErrors> points;
   for (std::vector<PointErrors>& scene : scenes) {
     points.insert(points.end(), std::make_move_iterator(scene.begin()), std::make_move_iterator(scene.end()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -17,7 +18,7 @@ struct CampaignSettings {
   int scenes = 1000;
   int secondaries = 1;
   int width_px = 0;  ///< 0: 48 to 96 px, by the seed
-  int threads = 1;
+  int threads = 0;   ///< 0: one a core
 };
 
 /// One control point. Errors in metres: over = answer - hi, under = lo - answer, 0 where negative. Where nothing was
@@ -39,7 +40,8 @@ struct PointErrors {
   std::string worst_line;     ///< the problem, for a repetition
 };
 
-/// Calls progress(done, total) now and then from one of the threads.
-std::vector<PointErrors> run_campaign(const CampaignSettings& settings, const std::function<void(int, int)>& progress);
+/// Calls progress(done, total) now and then from this thread.
+std::vector<PointErrors> run_campaign(const CampaignSettings& settings,
+                                      const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace depthgrid::lab

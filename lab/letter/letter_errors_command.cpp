@@ -1,142 +1,112 @@
 // Measures by how much the letter's evaluation and the corrected one over- and under-estimate distances, and writes
-// the page about it:  depthgrid_letter_errors --output docs/letter-errors.md
-#include <unistd.h>
-
+// the page about it:  depthgrid-lab letter errors --output docs/letter-errors.md
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <ctime>
-#include <fstream>
-#include <iostream>
+#include <memory>
+#include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "lab/commands.hpp"
 #include "lab/letter/letter_page.hpp"
+#include "program/output_file.hpp"
+#include "report/machine.hpp"
+#include "report/progress_line.hpp"
 
+namespace depthgrid::lab {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-/// One line on a terminal with the time left; nothing elsewhere.
-class Progress {
- public:
-  explicit Progress(std::string what) : what_(std::move(what)) {}
-  ~Progress() {
-    if (shown_) {
-      std::fprintf(stderr, "\r\033[K");
-    }
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void operator()(int done, int total) {
-    if (isatty(2) == 0 || done == 0) {
-      return;
-    }
-    const double passed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-    std::fprintf(stderr, "\r\033[K%s: %d of %d, %.0f s left", what_.c_str(), done, total,
-                 passed_s * (total - done) / done);
-    shown_ = true;
-  }
-
- private:
-  std::string what_;
-  Clock::time_point start_ = Clock::now();
-  bool shown_ = false;
-};
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
-  return text;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  using namespace depthgrid::lab;
+struct ErrorsOptions {
   std::uint64_t seed = 1;
   int scenes = 1000;
   int large_scenes = 100;
   std::vector<int> secondaries{1, 2, 3};
   int trials = 300;
   std::int64_t cases = 1'200'000;
-  int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  std::string output;
+  int threads = 0;
+  std::string output = "-";
   std::string json;
-  CLI::App app{"Errors of the letter's distance evaluation against a proven interval, as a page."};
-  app.add_option("--seed", seed, "first seed of all random cases")->capture_default_str();
-  app.add_option("--scenes", scenes, "small scenes for each number of secondary cameras")
+  std::string command_line;
+};
+
+/// What would make the page again.
+std::string command_line(const ErrorsOptions& options, const CLI::App& command) {
+  return "depthgrid-lab letter errors --seed " + std::to_string(options.seed) + " --scenes " +
+         std::to_string(options.scenes) + " --large-scenes " + std::to_string(options.large_scenes) + " --trials " +
+         std::to_string(options.trials) +
+         (command.count("--secondary") > 0 ? " --secondary " + CLI::detail::join(options.secondaries, ",") : "") +
+         (command.count("--cases") > 0 ? " --cases " + std::to_string(options.cases) : "") +
+         " --output docs/letter-errors.md";
+}
+
+void measure_errors(const ErrorsOptions& options) {
+  LetterErrors errors;
+  errors.command = options.command_line;
+  errors.date = report::today();
+  for (const int width_px : {0, 640}) {
+    for (const int count : options.secondaries) {
+      const CampaignSettings settings{options.seed, width_px == 0 ? options.scenes : options.large_scenes, count,
+                                      width_px, options.threads};
+      report::ProgressLine line(
+          std::to_string(count) + " secondary cameras, " + (width_px == 0 ? "small" : "640x480") + " scenes,",
+          static_cast<std::size_t>(settings.scenes));
+      if (settings.scenes > 0) {
+        errors.campaigns.push_back(
+            {settings, run_campaign(settings, [&](std::size_t done, std::size_t) { line.update(done); })});
+      }
+    }
+  }
+  errors.window = measure_window();
+  errors.clamp = measure_clamp(options.seed, options.cases);
+  errors.order = measure_order(options.seed, options.cases);
+  {
+    report::ProgressLine line("small objects", 24);
+    errors.vanishing = measure_vanishing(options.seed, options.trials, options.threads,
+                                         [&](std::size_t done, std::size_t) { line.update(done); });
+  }
+  program::OutputFile output(options.output);
+  std::ostringstream page;
+  write_page(errors, page);
+  output.write(page.str());
+  output.commit();
+  if (!options.json.empty()) {
+    write_json(errors, options.json);
+  }
+}
+
+}  // namespace
+
+void add_letter_errors_command(CLI::App& letter) {
+  const auto options = std::make_shared<ErrorsOptions>();
+  CLI::App* const command =
+      letter.add_subcommand("errors", "errors of the letter's distances against a proven interval, as a page");
+  command->add_option("--seed", options->seed, "first seed of all random cases")->capture_default_str();
+  command->add_option("--scenes", options->scenes, "small scenes for each number of secondary cameras")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--large-scenes", large_scenes, "scenes with 640x480 pixels for each number of secondary cameras")
+  command
+      ->add_option("--large-scenes", options->large_scenes,
+                   "scenes with 640x480 pixels for each number of secondary cameras")
       ->check(CLI::Range(0, 10'000'000))
       ->capture_default_str();
-  app.add_option("--secondary", secondaries, "numbers of secondary cameras")
+  command->add_option("--secondary", options->secondaries, "numbers of secondary cameras")
       ->delimiter(',')
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
-  app.add_option("--trials", trials, "trials for each kind of small object")
+  command->add_option("--trials", options->trials, "trials for each kind of small object")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--cases", cases, "random cases for the formulas")->check(CLI::Range(600, 1'000'000'000));
-  app.add_option("--threads", threads, "threads; the figures do not depend on them")
-      ->check(CLI::Range(1, 1024))
+  command->add_option("--cases", options->cases, "random cases for the formulas")
+      ->check(CLI::Range(600, 1'000'000'000))
       ->capture_default_str();
-  app.add_option("--output", output, "the page (Markdown); standard output when not given");
-  app.add_option("--json", json, "the same figures as JSON");
-  CLI11_PARSE(app, argc, argv);
-
-  try {
-    LetterErrors errors;
-    errors.command = "depthgrid_letter_errors --seed " + std::to_string(seed) + " --scenes " + std::to_string(scenes) +
-                     " --large-scenes " + std::to_string(large_scenes) + " --trials " + std::to_string(trials) +
-                     (app.count("--secondary") > 0 ? " --secondary " + CLI::detail::join(secondaries, ",") : "") +
-                     (app.count("--cases") > 0 ? " --cases " + std::to_string(cases) : "") +
-                     " --output docs/letter-errors.md";
-    errors.date = today();
-    for (const int width_px : {0, 640}) {
-      for (const int count : secondaries) {
-        CampaignSettings settings{seed, width_px == 0 ? scenes : large_scenes, count, width_px, threads};
-        if (settings.scenes > 0) {
-          Progress progress((width_px == 0 ? "small scenes, " : "640x480 scenes, ") + std::to_string(count) +
-                            " secondary");
-          errors.campaigns.push_back(
-              {settings, run_campaign(settings, [&](int done, int total) { progress(done, total); })});
-        }
-      }
-    }
-    errors.window = measure_window();
-    errors.clamp = measure_clamp(seed, cases);
-    errors.order = measure_order(seed, cases);
-    {
-      Progress progress("small objects");
-      errors.vanishing = measure_vanishing(seed, trials, threads, [&](int done, int total) { progress(done, total); });
-    }
-    if (output.empty()) {
-      write_page(errors, std::cout);
-    } else {
-      std::ofstream page(output);
-      write_page(errors, page);
-      if (!page.flush()) {
-        std::cerr << "cannot write " << output << '\n';
-        return 1;
-      }
-    }
-    if (!json.empty()) {
-      std::ofstream file(json);
-      write_json(errors, file);
-      if (!file.flush()) {
-        std::cerr << "cannot write " << json << '\n';
-        return 1;
-      }
-    }
-  } catch (const std::exception& error) {
-    std::cerr << "depthgrid_letter_errors: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  command->add_option("--threads", options->threads, "threads, 0: one a core; the figures do not depend on them")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_option("--output", options->output, "the page (Markdown), - for standard output")->capture_default_str();
+  command->add_option("--json", options->json, "the same figures as JSON");
+  command->callback([options, command] {
+    options->command_line = command_line(*options, *command);
+    measure_errors(*options);
+  });
 }
+
+}  // namespace depthgrid::lab

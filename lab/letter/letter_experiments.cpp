@@ -1,16 +1,16 @@
 #include "lab/letter/letter_experiments.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <thread>
 
 #include "depthgrid/core/pixel_frustum.hpp"
 #include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/map/parallel_for.hpp"
 #include "depthgrid/simulation/scene.hpp"
 #include "reference/random_problem.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 namespace {
@@ -65,18 +65,12 @@ struct FarRig {
   }
 };
 
-Excess summarise(std::string name, std::vector<double>& values_m) {
-  Excess result;
-  result.name = std::move(name);
-  result.cases = static_cast<std::int64_t>(values_m.size());
+Excess summarise(std::string name, const std::vector<double>& values_m) {
+  Excess result{std::move(name), static_cast<std::int64_t>(values_m.size())};
   if (!values_m.empty()) {
-    std::sort(values_m.begin(), values_m.end());
-    const auto at = [&](double share) {
-      return values_m[static_cast<std::size_t>(share * static_cast<double>(values_m.size() - 1))];
-    };
-    result.median_m = at(0.5);
-    result.q99_m = at(0.99);
-    result.largest_m = values_m.back();
+    result.median_m = report::quantile(values_m, 0.5);
+    result.q99_m = report::quantile(values_m, 0.99);
+    result.largest_m = report::quantile(values_m, 1);
   }
   return result;
 }
@@ -313,7 +307,7 @@ Vanishing vanishing_of(const Object& object, int secondaries, bool behind, int t
 }  // namespace
 
 std::vector<Vanishing> measure_vanishing(std::uint64_t seed, int trials, int threads,
-                                         const std::function<void(int, int)>& progress) {
+                                         const std::function<void(std::size_t, std::size_t)>& progress) {
   struct Job {
     Object object;
     int secondaries;
@@ -329,21 +323,13 @@ std::vector<Vanishing> measure_vanishing(std::uint64_t seed, int trials, int thr
     }
   }
   std::vector<Vanishing> rows(jobs.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&](bool reports) {
-    for (std::size_t i = next++; i < jobs.size(); i = next++) {
-      rows[i] = vanishing_of(jobs[i].object, jobs[i].secondaries, jobs[i].behind, trials, seed + i);
-      if (reports) {
-        progress(static_cast<int>(std::min(next.load(), jobs.size())), static_cast<int>(jobs.size()));
-      }
-    }
+  const auto work = [&](std::size_t i) {
+    rows[i] = vanishing_of(jobs[i].object, jobs[i].secondaries, jobs[i].behind, trials, seed + i);
   };
-  std::vector<std::jthread> pool;
-  for (int i = 1; i < threads; ++i) {
-    pool.emplace_back(work, false);
-  }
-  work(true);
-  pool.clear();
+  (void)grid::parallel_for(jobs.size(), threads, work, [&](std::size_t done) {
+    progress(done, jobs.size());
+    return true;
+  });
   return rows;
 }
 

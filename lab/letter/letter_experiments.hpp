@@ -1,6 +1,7 @@
 // Four experiments that isolate one error of the letter each, at 640x480 pixels, f = 525 px, rho = 0.4 m, 1 cm cells.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -40,6 +41,6 @@ struct Vanishing {
   int corrected = 0;  ///< the same for the corrected evaluation
 };
 std::vector<Vanishing> measure_vanishing(std::uint64_t seed, int trials, int threads,
-                                         const std::function<void(int, int)>& progress);
+                                         const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace depthgrid::lab

@@ -1,13 +1,13 @@
 #include "lab/letter/letter_page.hpp"
 
-#include <rapidjson/ostreamwrapper.h>
-#include <rapidjson/prettywriter.h>
-
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <functional>
 #include <utility>
+
+#include "lab/measure/json_file.hpp"
+#include "report/number_text.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 namespace {
@@ -34,30 +34,18 @@ Spread spread_of(const CampaignResult& campaign, const std::function<double(cons
   if (values_m.empty()) {
     return result;
   }
-  std::sort(values_m.begin(), values_m.end());
-  const auto at = [&](double share) {
-    return values_m[static_cast<std::size_t>(share * static_cast<double>(values_m.size() - 1))];
-  };
-  result.median_m = at(0.5);
-  result.q95_m = at(0.95);
-  result.q99_m = at(0.99);
-  result.largest_m = values_m.back();
+  result.median_m = report::quantile(values_m, 0.5);
+  result.q95_m = report::quantile(values_m, 0.95);
+  result.q99_m = report::quantile(values_m, 0.99);
+  result.largest_m = report::quantile(values_m, 1);
   const auto above =
       static_cast<double>(std::count_if(values_m.begin(), values_m.end(), [](double x) { return x > 0.01; }));
   result.share_above_1cm = above / static_cast<double>(values_m.size());
   return result;
 }
 
-std::string mm(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, metres >= 0.01 ? "%.0f" : metres >= 1e-4 ? "%.1f" : "%.0f", metres * 1000);
-  return text;
-}
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, share > 0 && share < 0.1 ? "%.1f %%" : "%.0f %%", share * 100);
-  return text;
-}
+std::string mm(double metres) { return report::fixed(metres * 1000, metres < 0.01 && metres >= 1e-4 ? 1 : 0); }
+std::string percent(double share) { return report::percent(share, share > 0 && share < 0.1 ? 1 : 0); }
 
 std::string images_of(const CampaignSettings& settings) {
   return settings.width_px == 0 ? "48x36 to 96x72" : "640x480";
@@ -255,37 +243,16 @@ void write_page(const LetterErrors& errors, std::ostream& out) {
   write_vanishing(errors, out);
 }
 
-void write_json(const LetterErrors& errors, std::ostream& out) {
-  rapidjson::OStreamWrapper stream(out);
-  rapidjson::PrettyWriter<rapidjson::OStreamWrapper> json(stream);
-  const auto number = [&json](const char* name, double value) {
-    json.Key(name);
-    json.Double(value);
-  };
-  const auto text = [&json](const char* name, const std::string& value) {
-    json.Key(name);
-    json.String(value.c_str());
-  };
-  json.StartObject();
-  text("command", errors.command);
-  text("date", errors.date);
-  json.Key("campaigns");
-  json.StartArray();
+void write_json(const LetterErrors& errors, const std::string& file) {
+  Json campaigns = Json::array();
   for (const CampaignResult& campaign : errors.campaigns) {
-    json.StartObject();
-    text("images", images_of(campaign.settings));
-    number("secondary_cameras", campaign.settings.secondaries);
+    Json& json = campaigns.emplace_back(
+        Json{{"images", images_of(campaign.settings)}, {"secondary_cameras", campaign.settings.secondaries}});
     const auto spread = [&](const char* name, const std::function<double(const PointErrors&)>& value) {
       const Spread s = spread_of(campaign, value);
-      json.Key(name);
-      json.StartObject();
-      number("points", static_cast<double>(s.count));
-      number("share_above_1cm", s.share_above_1cm);
-      number("median_m", s.median_m);
-      number("q95_m", s.q95_m);
-      number("q99_m", s.q99_m);
-      number("largest_m", s.largest_m);
-      json.EndObject();
+      json[name] = {{"points", s.count},      {"share_above_1cm", s.share_above_1cm},
+                    {"median_m", s.median_m}, {"q95_m", s.q95_m},
+                    {"q99_m", s.q99_m},       {"largest_m", s.largest_m}};
     };
     spread("letter_printed_over", [](const PointErrors& p) { return p.letter_printed.over_m; });
     spread("letter_printed_under", [](const PointErrors& p) { return p.letter_printed.under_m; });
@@ -296,49 +263,39 @@ void write_json(const LetterErrors& errors, std::ostream& out) {
     for (std::size_t i = 0; i < kCauses.size(); ++i) {
       spread(kCauses[i], [i](const PointErrors& p) { return p.over_after_mends_m[i] - p.over_after_mends_m[i + 1]; });
     }
-    json.EndObject();
   }
-  json.EndArray();
-  json.Key("window");
-  json.StartArray();
+  Json window = Json::array();
   for (const WindowMiss& row : errors.window) {
-    json.StartObject();
-    number("depth_m", row.depth_m);
-    number("first_missed_m", row.first_missed_m);
-    number("last_whole_m", row.last_whole_m);
-    json.EndObject();
+    window.push_back(
+        {{"depth_m", row.depth_m}, {"first_missed_m", row.first_missed_m}, {"last_whole_m", row.last_whole_m}});
   }
-  json.EndArray();
-  for (const auto& [name, rows] : {std::pair{"clamp", &errors.clamp}, std::pair{"order", &errors.order}}) {
-    json.Key(name);
-    json.StartArray();
-    for (const Excess& row : *rows) {
-      json.StartObject();
-      text("case", row.name);
-      number("cases", static_cast<double>(row.cases));
-      number("median_m", row.median_m);
-      number("q99_m", row.q99_m);
-      number("largest_m", row.largest_m);
-      json.EndObject();
+  const auto excess = [](const std::vector<Excess>& rows) {
+    Json json = Json::array();
+    for (const Excess& row : rows) {
+      json.push_back({{"case", row.name},
+                      {"cases", row.cases},
+                      {"median_m", row.median_m},
+                      {"q99_m", row.q99_m},
+                      {"largest_m", row.largest_m}});
     }
-    json.EndArray();
-  }
-  json.Key("vanishing");
-  json.StartArray();
+    return json;
+  };
+  Json vanishing = Json::array();
   for (const Vanishing& row : errors.vanishing) {
-    json.StartObject();
-    text("object", row.object);
-    number("secondary_cameras", row.secondaries);
-    json.Key("point_behind");
-    json.Bool(row.point_behind);
-    number("trials", row.trials);
-    number("letter", row.letter);
-    number("corrected", row.corrected);
-    json.EndObject();
+    vanishing.push_back({{"object", row.object},
+                         {"secondary_cameras", row.secondaries},
+                         {"point_behind", row.point_behind},
+                         {"trials", row.trials},
+                         {"letter", row.letter},
+                         {"corrected", row.corrected}});
   }
-  json.EndArray();
-  json.EndObject();
-  stream.Flush();
+  write_json_file(file, {{"command", errors.command},
+                         {"date", errors.date},
+                         {"campaigns", std::move(campaigns)},
+                         {"window", std::move(window)},
+                         {"clamp", excess(errors.clamp)},
+                         {"order", excess(errors.order)},
+                         {"vanishing", std::move(vanishing)}});
 }
 
 }  // namespace depthgrid::lab

@@ -26,6 +26,7 @@ struct LetterErrors {
 };
 
 void write_page(const LetterErrors& errors, std::ostream& out);
-void write_json(const LetterErrors& errors, std::ostream& out);
+/// Throws Error that names the file.
+void write_json(const LetterErrors& errors, const std::string& file);
 
 }  // namespace depthgrid::lab

@@ -1,14 +1,13 @@
 #include "lab/letter/letter_rate_page.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
-#include <fstream>
 #include <sstream>
 
-#include "depthgrid/core/error.hpp"
-#include "lab/machine.hpp"
+#include "depthgrid/files/text_file.hpp"
+#include "report/machine.hpp"
+#include "report/number_text.hpp"
 #include "report/plot.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 namespace {
@@ -22,14 +21,15 @@ const RateRow* find(std::span<const RateRow> rows, const std::string& name, int 
   return nullptr;
 }
 
-double milliseconds(const RateRow& row, double q) { return 1e3 * quantile(row.evaluation_s, q); }
+double milliseconds_at(const RateRow& row, double q) { return 1e3 * report::quantile(row.evaluation_s, q); }
 
-constexpr const char* kIntroduction = R"(# Speed of the grid evaluators
+constexpr const char* kMadeBy = R"(# Speed of the grid evaluators
 
-Made by `build/release/bin/depthgrid_letter_rate --page docs/benchmark.md --plot docs/images/letter-rate.png`.
+Made by `build/release/bin/depthgrid-lab letter rate --page docs/benchmark.md --plot docs/images/letter-rate.png`.
 
 Workload W: a room of 6.6 x 6.6 m with a table, five boxes, an arm of 7 capsules and two people of 17 capsules each, all
-moving, seen by up to eight cameras of 640 x 480 pixels around it; robot pixels masked; %d frame sets at 30 Hz. Nine control
+moving, seen by up to eight cameras of 640 x 480 pixels around it; robot pixels masked; )";
+constexpr const char* kIntroduction = R"( frame sets at 30 Hz. Nine control
 points along the arm, drawn anew for every evaluation; rho = 0.4 m; cells of 1 cm, 640 x 480 x 343 of them, from 0.2882 m;
 closed form of the depth grid map; ideal sensor. `letter` scans the printed window (8)-(9), `corrected` the exact one, which
 has about four times as many pixels with `hybrid`.
@@ -48,18 +48,16 @@ std::string rate_table_head() {
 }
 
 std::string rate_table_row(const RateRow& row) {
+  using report::fixed;
   const auto n = static_cast<double>(std::max<std::size_t>(row.evaluation_s.size(), 1));
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(),
-                "| %s | %d | %.0f | %.2f / %.2f / %.2f | %.2f | %.0f | %.0f | %.0f %% | %.0f / %.0f / %.0f |\n",
-                row.name.c_str(), row.cameras, row.rate(), milliseconds(row, 0.5), milliseconds(row, 0.99),
-                milliseconds(row, 1), 1e3 * quantile(row.update_s, 0.5), static_cast<double>(row.count.pixels) / n,
-                static_cast<double>(row.count.cells) / n,
-                100.0 * static_cast<double>(row.count.gray_pixels) /
-                    static_cast<double>(std::max<std::int64_t>(row.count.pixels, 1)),
-                1e3 * quantile(row.distances_m, 0.1), 1e3 * quantile(row.distances_m, 0.5),
-                1e3 * quantile(row.distances_m, 0.9));
-  return text.data();
+  const auto distance_mm = [&row](double q) { return fixed(1e3 * report::quantile(row.distances_m, q)); };
+  return "| " + row.name + " | " + std::to_string(row.cameras) + " | " + fixed(row.rate()) + " | " +
+         fixed(milliseconds_at(row, 0.5), 2) + " / " + fixed(milliseconds_at(row, 0.99), 2) + " / " +
+         fixed(milliseconds_at(row, 1), 2) + " | " + fixed(1e3 * report::quantile(row.update_s, 0.5), 2) + " | " +
+         fixed(static_cast<double>(row.count.pixels) / n) + " | " + fixed(static_cast<double>(row.count.cells) / n) +
+         " | " +
+         report::percent_of(static_cast<double>(row.count.gray_pixels), static_cast<double>(row.count.pixels), 0) +
+         " | " + distance_mm(0.1) + " / " + distance_mm(0.5) + " / " + distance_mm(0.9) + " |\n";
 }
 
 void draw_rate_plot(const std::string& file, std::span<const RateRow> rows) {
@@ -69,7 +67,7 @@ void draw_rate_plot(const std::string& file, std::span<const RateRow> rows) {
       plot.series.push_back({row.name, {}, {}, true});
     }
     plot.series.back().x.push_back(row.cameras);
-    plot.series.back().y.push_back(milliseconds(row, 0.5));
+    plot.series.back().y.push_back(milliseconds_at(row, 0.5));
   }
   report::Canvas canvas(900, 560);
   report::draw_plot(canvas, {0, 0, 900, 560}, plot);
@@ -78,9 +76,7 @@ void draw_rate_plot(const std::string& file, std::span<const RateRow> rows) {
 
 void write_rate_page(const std::string& file, std::span<const RateRow> rows, int frame_sets) {
   std::ostringstream page;
-  std::array<char, 2048> introduction{};
-  std::snprintf(introduction.data(), introduction.size(), kIntroduction, frame_sets);
-  page << introduction.data() << machine_line() << "\n\n" << rate_table_head();
+  page << kMadeBy << frame_sets << kIntroduction << report::machine_line() << "\n\n" << rate_table_head();
   for (const RateRow& row : rows) {
     page << rate_table_row(row);
   }
@@ -94,8 +90,8 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
          << (two->rate() >= 300 ? "met" : "missed") << ": " << static_cast<int>(two->rate()) << " a second.\n";
     const RateRow* one = find(rows, "letter, hybrid", 1);
     if (one != nullptr) {
-      const double pixels_ms = milliseconds(*one, 0.5);
-      const double cells_ms = milliseconds(*two, 0.5) - pixels_ms;
+      const double pixels_ms = milliseconds_at(*one, 0.5);
+      const double cells_ms = milliseconds_at(*two, 0.5) - pixels_ms;
       const double cells = static_cast<double>(two->count.cells) / static_cast<double>(two->evaluation_s.size()) -
                            static_cast<double>(one->count.cells) / static_cast<double>(one->evaluation_s.size());
       page << "\n- Where its time goes (medians): " << pixels_ms
@@ -116,12 +112,7 @@ void write_rate_page(const std::string& file, std::span<const RateRow> rows, int
            << " times the time of 2, for 7 times the secondary cameras.\n";
     }
   }
-  std::ofstream out(file);
-  out << page.str();
-  out.close();
-  if (!out) {
-    fail(file, ": cannot be written");
-  }
+  files::write_text_file(file, page.str());
 }
 
 std::string broken_ratio(std::span<const RateRow> rows) {

@@ -1,20 +1,11 @@
 #include "lab/letter/letter_rate_rows.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <numeric>
 
+#include "lab/measure/clocks.hpp"
+
 namespace depthgrid::lab {
-namespace {
-
-/// CPU time of this thread in seconds: what other programs take of the core does not count.
-double cpu_time_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-}  // namespace
 
 std::vector<RateMethod> rate_methods() {
   std::vector<RateMethod> methods;
@@ -38,15 +29,6 @@ double RateRow::rate() const {
   return total_s > 0 ? static_cast<double>(evaluation_s.size()) / total_s : 0;
 }
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
 RateRow measure_rate(const Workload& workload, int cameras, const RateMethod& method, int repetitions) {
   RateRow row;
   row.name = method.name;
@@ -58,14 +40,14 @@ RateRow measure_rate(const Workload& workload, int cameras, const RateMethod& me
   std::uint64_t seed = 1;
   for (int set = 0; set < workload.frame_sets(); ++set) {
     const auto frames = workload.frames(set).first(static_cast<std::size_t>(cameras));
-    const double update_start_s = cpu_time_s();
+    const double update_start_s = processor_time_s();
     evaluator.update(frames);
-    row.update_s.push_back(cpu_time_s() - update_start_s);
+    row.update_s.push_back(processor_time_s() - update_start_s);
     for (int i = 0; i < std::max(1, repetitions / method.repetition_divisor); ++i) {
       const auto points = random_workload_points(Workload::time_s(set), kWorkloadControlPoints, seed++);
-      const double start_s = cpu_time_s();
+      const double start_s = processor_time_s();
       evaluator.evaluate(points, answers, &row.count);
-      row.evaluation_s.push_back(cpu_time_s() - start_s);
+      row.evaluation_s.push_back(processor_time_s() - start_s);
       for (const grid::Evaluation& answer : answers) {
         if (has_distance(answer.nearest)) {
           row.distances_m.push_back(answer.nearest.distance_m);

@@ -32,9 +32,6 @@ struct RateRow {
   [[nodiscard]] double rate() const;
 };
 
-/// The value below which the share q of the values lies; 0 when there are none.
-[[nodiscard]] double quantile(std::vector<double> values, double q);
-
 /// 1 cm cells, 640x480x343, as the letter has them. New control points for every evaluation.
 [[nodiscard]] RateRow measure_rate(const Workload& workload, int cameras, const RateMethod& method, int repetitions);
 

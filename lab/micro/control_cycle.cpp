@@ -1,15 +1,17 @@
 // How long one control cycle takes: seven joints, the end effector and eight points of the body, one core. Kinematics
 // and distances are not part of it. Prints a table.
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <vector>
 
 #include "control/cell.hpp"
-#include "lab/machine.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
+#include "report/machine.hpp"
 
 namespace depthgrid::control {
 namespace {
@@ -19,17 +21,13 @@ struct Situation {
   double away_m;  ///< of the sphere's centre from the middle of the task
 };
 
-struct Row {
-  double median_us, p999_us, largest_us;
-};
-
 /// The letter's task with a sphere that swings through the arm's front.
-Row measure(const ControllerSettings& settings, double away_m, int cycles) {
+lab::Samples measure(const ControllerSettings& settings, double away_m, int cycles) {
   Controller controller(settings);
   controller.start(test::lwr_bent());
   PolygonTask task(test::lwr_hexagon());
   const Eigen::Vector3d middle = test::lwr_flange(test::lwr_bent()).p_world;
-  std::vector<double> times_us;
+  lab::Samples times_us;
   std::vector<BodyPoint> body;
   for (int k = -1000; k < cycles; ++k) {
     const double t = settings.period_s * k;
@@ -45,23 +43,19 @@ Row measure(const ControllerSettings& settings, double away_m, int cycles) {
                            .end_effector = obstacle_of(at_tip, at_tip.direction_world),
                            .body = body,
                            .further_tasks = {}};
-    const auto start = std::chrono::steady_clock::now();
+    const lab::Stopwatch watch;
     const CycleOutput output = controller.cycle(input);
-    const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
+    const double elapsed_us = 1e6 * watch.elapsed_s();
     if (k >= 0 && output.command.position_rad.size() > 0) {
-      times_us.push_back(elapsed.count());
+      times_us.add(elapsed_us);
     }
   }
-  std::sort(times_us.begin(), times_us.end());
-  const auto at = [&](double part) {
-    return times_us[static_cast<std::size_t>(part * static_cast<double>(times_us.size() - 1))];
-  };
-  return {at(0.5), at(0.999), times_us.back()};
+  return times_us;
 }
 
-void print_row(const char* saturation, const char* law, const Situation& situation, const Row& row) {
-  std::printf("| %s | %s | %s | %.2f | %.2f | %.1f |\n", saturation, law, situation.name, row.median_us, row.p999_us,
-              row.largest_us);
+void print_row(const char* saturation, const char* law, const Situation& situation, const lab::Samples& times_us) {
+  std::printf("| %s | %s | %s | %.2f | %.2f | %.1f |\n", saturation, law, situation.name, times_us.median(),
+              times_us.quantile(0.999), times_us.largest());
   std::fflush(stdout);
 }
 
@@ -82,16 +76,21 @@ void measure_all(int cycles) {
 }  // namespace
 }  // namespace depthgrid::control
 
-int main(int argc, char** argv) {
-  CLI::App app{"Time of one control cycle, one core."};
-  int cycles = 50000;
-  app.add_option("--cycles", cycles, "cycles in each situation")
+namespace depthgrid::lab {
+
+void add_control_cycle_command(CLI::App& app) {
+  const auto cycles = std::make_shared<int>(50000);
+  CLI::App* const command =
+      app.add_subcommand("control-cycle", "time of one control cycle, distances not included, one core: some seconds");
+  command->add_option("--cycles", *cycles, "cycles in each situation")
       ->check(CLI::Range(10, 100000000))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  std::cout << depthgrid::lab::machine_line() << "\n\n"
-            << "| saturation | body law | situation | median us | 99.9 % | maximum |\n|---|---|---|---|---|---|\n"
-            << std::flush;
-  depthgrid::control::measure_all(cycles);
-  return 0;
+  command->callback([cycles] {
+    std::cout << report::machine_line() << "\n\n"
+              << "| saturation | body law | situation | median us | 99.9 % | maximum |\n|---|---|---|---|---|---|\n"
+              << std::flush;
+    control::measure_all(*cycles);
+  });
 }
+
+}  // namespace depthgrid::lab

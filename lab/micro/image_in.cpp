@@ -3,19 +3,22 @@
 // memory as a camera's driver would leave it, or colder.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/views/view_store.hpp"
-#include "lab/machine.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
 #include "lab/workload/workload.hpp"
 #include "lab/workload/workload_noise.hpp"
+#include "report/machine.hpp"
 
 namespace depthgrid::lab {
 namespace {
@@ -58,43 +61,34 @@ views::Settings settings_for(std::size_t cameras) {
   return settings;
 }
 
-struct Row {
-  double median_ms, p999_ms, largest_ms;
-};
-
 /// Each camera's images in turn; the snapshot of the frame set before is held, as by a thread that asks.
-Row measure(const Rig& rig, int frame_sets, int repetitions, const std::function<std::span<const Frame>(int)>& frames,
-            bool with_robot) {
+Samples measure(const Rig& rig, int frame_sets, int repetitions,
+                const std::function<std::span<const Frame>(int)>& frames, bool with_robot) {
   views::ViewStore store(rig, settings_for(rig.cameras.size()));
   std::optional<views::Snapshot> held;
-  std::vector<double> times_ms;
+  Samples times_ms;
   for (int repetition = -1; repetition < repetitions; ++repetition) {
     for (int set = 0; set < frame_sets; ++set) {
       for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
         Frame frame = frames(set)[k];
         frame.robot = with_robot ? frame.robot : RobotView{};
-        const auto start = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         const views::UpdateResult result = store.update(k, frame);
-        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+        const double elapsed_ms = 1e3 * watch.elapsed_s();
         if (result != views::UpdateResult::taken) {
-          throw std::runtime_error("a frame was not taken");
+          fail("a frame was not taken");
         }
         if (repetition >= 0) {
-          times_ms.push_back(elapsed.count());
+          times_ms.add(elapsed_ms);
         }
       }
       held.emplace(store.snapshot());
     }
   }
-  std::sort(times_ms.begin(), times_ms.end());
-  const auto at = [&](double part) {
-    return times_ms[static_cast<std::size_t>(part * static_cast<double>(times_ms.size() - 1))];
-  };
-  return {at(0.5), at(0.999), times_ms.back()};
+  return times_ms;
 }
 
 void measure_size(int width_px, int height_px, int cameras, int frame_sets, int repetitions) {
-  std::fprintf(stderr, "rendering %d x %d\n", width_px, height_px);
   const Rig rig = rig_of_size(cameras, width_px, height_px);
   const Workload clean(rig, frame_sets, kWorkloadRobotPadding);
   const Workload padded(rig, frame_sets, kNoisyRobotPadding);
@@ -104,40 +98,44 @@ void measure_size(int width_px, int height_px, int cameras, int frame_sets, int 
     part.cameras.resize(static_cast<std::size_t>(std::min(count, cameras)));
     for (const Content content : {Content::no_robot, Content::robot, Content::noisy_robot}) {
       const bool noise = content == Content::noisy_robot;
-      const Row row = measure(
+      const Samples times_ms = measure(
           part, frame_sets, repetitions * cameras / count,
           [&](int set) { return noise ? noisy.frames(set) : clean.frames(set); }, content != Content::no_robot);
       std::printf("| %d x %d | %d | %s | %.3f | %.3f | %.3f |\n", width_px, height_px, count, name_of(content),
-                  row.median_ms, row.p999_ms, row.largest_ms);
+                  times_ms.median(), times_ms.quantile(0.999), times_ms.largest());
       std::fflush(stdout);
     }
   }
 }
 
-}  // namespace
-}  // namespace depthgrid::lab
-
-int main(int argc, char** argv) {
-  using namespace depthgrid;
-  CLI::App app{"Time of one image from the camera's buffer to being ready for the search, one core."};
-  int cameras = lab::kWorkloadCameras;
+struct ImageInOptions {
+  int cameras = kWorkloadCameras;
   int sets = 4;
   int repetitions = 100;
-  app.add_option("--cameras", cameras, "most cameras")->check(CLI::Range(1, lab::kWorkloadCameras));
-  app.add_option("--frame-sets", sets, "frame sets rendered")->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--repetitions", repetitions, "how often the frame sets are taken in")
+};
+
+}  // namespace
+
+void add_image_in_command(CLI::App& app) {
+  const auto options = std::make_shared<ImageInOptions>();
+  CLI::App* const command = app.add_subcommand(
+      "image-in", "time of one image from the camera's buffer to being ready for the search, one core: a minute");
+  command->add_option("--cameras", options->cameras, "most cameras")
+      ->check(CLI::Range(1, kWorkloadCameras))
+      ->capture_default_str();
+  command->add_option("--frame-sets", options->sets, "frame sets rendered")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--repetitions", options->repetitions, "how often the frame sets are taken in")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  try {
-    std::cout << lab::machine_line() << "\n\n"
+  command->callback([options] {
+    std::cout << report::machine_line() << "\n\n"
               << "| image | cameras | content | median ms | 99.9 % | maximum |\n|---|---|---|---|---|---|\n"
               << std::flush;
-    lab::measure_size(640, 480, cameras, sets, repetitions);
-    lab::measure_size(1280, 720, cameras, sets, repetitions);
-  } catch (const std::exception& error) {
-    std::cerr << "depthgrid_image_in: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+    measure_size(640, 480, options->cameras, options->sets, options->repetitions);
+    measure_size(1280, 720, options->cameras, options->sets, options->repetitions);
+  });
 }
+
+}  // namespace depthgrid::lab

@@ -1,36 +1,31 @@
 // What the storages of the depth grid map cost: time to build, size, and time to look a cell up beside the closed form.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
-#include <ctime>
-#include <fstream>
-#include <iterator>
+#include <iostream>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/core/pose.hpp"
 #include "depthgrid/grid/map/map_builder.hpp"
-#include "lab/machine.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
+#include "report/machine.hpp"
+#include "report/markdown_table.hpp"
+#include "report/marked_page.hpp"
+#include "report/number_text.hpp"
+#include "report/progress_line.hpp"
 
+namespace depthgrid::lab {
 namespace {
 
-using namespace depthgrid;
-
 constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
-
-/// CPU time in seconds: what other programs take of the cores does not count.
-double cpu_time_s(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// A principal camera that looks at a point 2 m ahead, and up to four others around that point, as far from it.
 struct Setting {
@@ -70,13 +65,13 @@ Lookup look_up(const Map& map, const Setting& s, int windows) {
   }
   constexpr int kSide = 48;
   constexpr int kWalk = 40;
-  std::vector<double> ns;
+  Samples ns;
   Lookup result;
   for (int window = 0; window < windows; ++window) {
     const int u0 = static_cast<int>(random() % static_cast<unsigned>(camera.width_px - kSide));
     const int v0 = static_cast<int>(random() % static_cast<unsigned>(camera.height_px - kSide));
     const int n0 = static_cast<int>(random() % static_cast<unsigned>(s.grid.count() - kWalk));
-    const double begin_s = cpu_time_s(CLOCK_THREAD_CPUTIME_ID);
+    const double begin_s = processor_time_s();
     for (int v = v0; v < v0 + kSide; ++v) {
       for (int u = u0; u < u0 + kSide; ++u) {
         for (std::size_t k = 0; k < map.camera_count(); ++k) {
@@ -88,10 +83,9 @@ Lookup look_up(const Map& map, const Setting& s, int windows) {
       }
     }
     const double cells = static_cast<double>(kSide) * kSide * kWalk * static_cast<double>(map.camera_count());
-    ns.push_back(1e9 * (cpu_time_s(CLOCK_THREAD_CPUTIME_ID) - begin_s) / cells);
+    ns.add(1e9 * (processor_time_s() - begin_s) / cells);
   }
-  std::nth_element(ns.begin(), ns.begin() + windows / 2, ns.end());
-  result.ns_a_cell = ns[static_cast<std::size_t>(windows) / 2];
+  result.ns_a_cell = ns.median();
   return result;
 }
 
@@ -115,46 +109,41 @@ ListCount count_pixels(const grid::PixelListMap& lists) {
   return {cells > 0 ? pixels / cells : 0, 4 * pixels + 8 * all_cells};
 }
 
-struct Options {
+struct StoragesOptions {
   bool quick = false;
   std::string page;
 };
 
+std::string gib(double bytes, int digits) { return report::fixed(bytes / kGiB, digits); }
+
 class Bench {
  public:
-  explicit Bench(const Options& options) : windows_(options.quick ? 31 : 201) {
-    add("| storage | image x depths | secondary cameras | built in s (CPU s) | size GiB | pixels a cell | look-up ns a "
-        "cell | closed form ns a cell |");
-    add("|---|---|---|---|---|---|---|---|");
-  }
+  explicit Bench(int windows) : windows_(windows) {}
 
   void run(grid::MapStorage storage, int width_px, int depths, int cameras) {
+    progress_.update(done_++);
     const Setting s = setting(width_px, depths, cameras);
-    const auto begin = std::chrono::steady_clock::now();
-    const double begin_cpu_s = cpu_time_s(CLOCK_PROCESS_CPUTIME_ID);
+    const Stopwatch watch;
+    const double begin_cpu_s = process_time_s();
     const grid::DepthGridMap map = grid::build_map(s.grid, s.secondaries, storage);
-    const double cpu_s = cpu_time_s(CLOCK_PROCESS_CPUTIME_ID) - begin_cpu_s;
-    const double built_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double cpu_s = process_time_s() - begin_cpu_s;
+    const double built_s = watch.elapsed_s();
     const grid::ClosedFormMap closed_form(s.grid, s.secondaries);
     const Lookup computed = look_up(closed_form, s, windows_);
     const Lookup stored = std::visit([&](const auto& any) { return look_up(any, s, windows_); }, map);
     const auto* lists = std::get_if<grid::PixelListMap>(&map);
     if (lists == nullptr ? stored.confirmed != computed.confirmed : stored.confirmed < computed.confirmed) {
-      throw std::runtime_error("the storages do not confirm the same cells");
+      fail("the storages do not confirm the same cells");
     }
     const ListCount count = lists != nullptr ? count_pixels(*lists) : ListCount{1, 0};
-    std::array<char, 256> line{};
-    (void)std::snprintf(
-        line.data(), line.size(), "| %s | %d x %d x %d | %d | %.2f (%.2f) | %.3f | %.2f | %.1f | %.1f |",
-        lists != nullptr ? "full lists" : "one pixel", width_px, width_px * 3 / 4, depths, cameras, built_s, cpu_s,
-        static_cast<double>(grid::table_bytes(map)) / kGiB, count.pixels_a_cell, stored.ns_a_cell, computed.ns_a_cell);
-    add(line.data());
+    table_.row({lists != nullptr ? "full lists" : "one pixel", size_text(width_px, depths), std::to_string(cameras),
+                report::fixed(built_s, 2) + " (" + report::fixed(cpu_s, 2) + ")",
+                gib(static_cast<double>(grid::table_bytes(map)), 3), report::fixed(count.pixels_a_cell, 2),
+                report::fixed(stored.ns_a_cell, 1), report::fixed(computed.ns_a_cell, 1)});
     if (lists != nullptr) {
-      (void)std::snprintf(
-          line.data(), line.size(),
-          "- %d x %d x %d, %d secondary: the same lists with every pixel written out would take %.3f GiB", width_px,
-          width_px * 3 / 4, depths, cameras, count.written_out_bytes / kGiB);
-      notes_.push_back(line.data());
+      notes_ += "- " + size_text(width_px, depths) + ", " + std::to_string(cameras) +
+                " secondary: the same lists with every pixel written out would take " +
+                gib(count.written_out_bytes, 3) + " GiB\n";
     }
   }
 
@@ -162,62 +151,34 @@ class Bench {
   void project_size(int width_px, int depths, int cameras) {
     const Setting s = setting(width_px, depths, cameras);
     const grid::MapMemory memory = grid::estimate_map_memory(s.grid, s.secondaries, grid::MapStorage::pixel_lists);
-    std::array<char, 256> line{};
-    (void)std::snprintf(line.data(), line.size(), "- full lists at %d x %d x %d, %d secondary: %.2f GiB (computed)",
-                        width_px, width_px * 3 / 4, depths, cameras,
-                        static_cast<double>(memory.bytes) / memory.safety_factor / kGiB);
-    notes_.push_back(line.data());
+    notes_ += "- full lists at " + size_text(width_px, depths) + ", " + std::to_string(cameras) +
+              " secondary: " + gib(static_cast<double>(memory.bytes) / memory.safety_factor, 2) + " GiB (computed)\n";
   }
 
   [[nodiscard]] std::string text() const {
-    std::string all = "Machine: " + lab::machine_line() + "\nBuilding uses all cores, looking up one.\n\n";
-    for (const std::string& line : table_) {
-      all += line + "\n";
-    }
-    all += "\n";
-    for (const std::string& line : notes_) {
-      all += line + "\n";
-    }
-    return all;
+    return "Machine: " + report::machine_line() + "\nBuilding uses all cores, looking up one.\n\n" + table_.text() +
+           "\n\n" + notes_;
   }
 
  private:
-  void add(std::string line) {
-    std::printf("%s\n", line.c_str());
-    (void)std::fflush(stdout);
-    table_.push_back(std::move(line));
+  static std::string size_text(int width_px, int depths) {
+    return std::to_string(width_px) + " x " + std::to_string(width_px * 3 / 4) + " x " + std::to_string(depths);
   }
 
   int windows_;
-  std::vector<std::string> table_;
-  std::vector<std::string> notes_;
+  report::MarkdownTable table_{{"storage", "image x depths", "secondary cameras", "built in s (CPU s)", "size GiB",
+                                "pixels a cell", "look-up ns a cell", "closed form ns a cell"}};
+  std::string notes_;
+  report::ProgressLine progress_{"map", 6};
+  std::size_t done_ = 0;
 };
 
-/// Puts the text between the page's two markers.
-void write_page(const std::string& file, const std::string& text) {
-  const std::string begin = "<!-- measured: begin -->\n";
-  const std::string end = "<!-- measured: end -->";
-  std::ifstream in(file, std::ios::binary);
-  std::string page{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const std::size_t from = page.find(begin);
-  const std::size_t to = page.find(end);
-  if (from == std::string::npos || to == std::string::npos || to < from) {
-    throw std::runtime_error(file + ": has no lines <!-- measured: begin --> and <!-- measured: end -->");
-  }
-  page.replace(from + begin.size(), to - from - begin.size(), text);
-  std::ofstream out(file, std::ios::binary);
-  out << page;
-  if (!out.flush()) {
-    throw std::runtime_error(file + ": cannot be written");
-  }
-}
-
-void run(const Options& options) {
+void measure_all(const StoragesOptions& options) {
   using grid::MapStorage;
   const int large_px = options.quick ? 160 : 640;
   const int small_px = options.quick ? 80 : 160;
   const int depths = options.quick ? 100 : 343;
-  Bench bench(options);
+  Bench bench(options.quick ? 31 : 201);
   for (const int cameras : {1, 2, 4}) {
     bench.run(MapStorage::one_pixel, large_px, depths, cameras);
   }
@@ -227,25 +188,21 @@ void run(const Options& options) {
     bench.project_size(large_px, depths, cameras);
   }
   const std::string text = bench.text();
-  std::printf("\n%s", text.c_str());
+  std::cout << text;
   if (!options.page.empty()) {
-    write_page(options.page, text);
+    report::write_between(options.page, "<!-- measured: begin -->", "<!-- measured: end -->", text);
   }
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CLI::App app("Build time, size and look-up cost of the depth grid map's storages.");
-  Options options;
-  app.add_flag("--quick", options.quick, "small images, less than 200 MB in all");
-  app.add_option("--page", options.page, "page whose measured part is replaced, docs/depth-grid-map.md");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    run(options);
-  } catch (const std::exception& error) {
-    (void)std::fprintf(stderr, "depthgrid_map_storages: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+void add_map_storages_command(CLI::App& app) {
+  const auto options = std::make_shared<StoragesOptions>();
+  CLI::App* const command = app.add_subcommand(
+      "map-storages", "build time, size and look-up cost of the depth grid map's storages: minutes, --quick seconds");
+  command->add_flag("--quick", options->quick, "small images, less than 200 MB in all");
+  command->add_option("--page", options->page, "page whose measured part is replaced, docs/depth-grid-map.md");
+  command->callback([options] { measure_all(*options); });
 }
+
+}  // namespace depthgrid::lab

@@ -2,16 +2,19 @@
 // 640x480, with the padding of a moving arm. Prints a table.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/robot_at_exposure.hpp"
-#include "lab/machine.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
+#include "report/machine.hpp"
 
 namespace depthgrid::lab {
 namespace {
@@ -41,8 +44,7 @@ void measure(const RobotModel& model, double distance_m, double time_error_s, bo
   robot::RobotAtExposure exposure(model, history, camera, robot::link_capsules(model), settings);
   const std::vector<std::uint16_t> units = image(engine);
   const DepthView reading = depth_view(units, 640, 480, 0.001);
-  std::vector<double> medians_ms;  // of each pose: one slow image is the machine's doing, a slow median the pose's
-  std::vector<double> times_ms;
+  Samples medians_ms;  // of each pose: one slow image is the machine's doing, a slow median the pose's
   double share = 0;
   for (int i = 0; i < poses; ++i) {
     std::vector<double> q;
@@ -55,49 +57,58 @@ void measure(const RobotModel& model, double distance_m, double time_error_s, bo
     const Pose T_world_camera = look_at(
         target + distance_m * Eigen::Vector3d(std::cos(turn), std::sin(turn), uniform(-0.3, 0.6)).normalized(), target);
     robot::ExposedRobot found;
-    times_ms.clear();
+    Samples times_ms;
     for (int repetition = 0; repetition < repetitions; ++repetition) {
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       found = exposure.find(i, T_world_camera, with_reading ? &reading : nullptr);
-      const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-      times_ms.push_back(elapsed.count());
+      times_ms.add(1e3 * watch.elapsed_s());
     }
-    std::sort(times_ms.begin(), times_ms.end());
-    medians_ms.push_back(times_ms[times_ms.size() / 2]);
+    medians_ms.add(times_ms.median());
     long robot_pixels = 0;
     for (int k = 0; k < 480 * 640; ++k) {
       robot_pixels += found.view.near_m[k] > 0 ? 1 : 0;
     }
     share += static_cast<double>(robot_pixels) / (640.0 * 480.0 * poses);
   }
-  std::sort(medians_ms.begin(), medians_ms.end());
   std::printf("| %.1f | %.0f | %s | %.0f %% | %.2f | %.2f |\n", distance_m, 1e3 * time_error_s,
-              with_reading ? "yes" : "no", 100 * share, medians_ms[medians_ms.size() / 2], medians_ms.back());
+              with_reading ? "yes" : "no", 100 * share, medians_ms.median(), medians_ms.largest());
   std::fflush(stdout);
 }
 
-}  // namespace
-}  // namespace depthgrid::lab
-
-int main(int argc, char** argv) {
-  using namespace depthgrid;
-  CLI::App app{"Time of joint positions, kinematics, padding and the robot's interval in one 640x480 image, one core."};
+struct RemovalOptions {
   int poses = 100;
   int repetitions = 20;
-  app.add_option("--poses", poses, "random joint positions a row")->check(CLI::Range(1, 100000))->capture_default_str();
-  app.add_option("--repetitions", repetitions, "images a pose")->check(CLI::Range(1, 10000))->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
-  const robot::RobotModel model = robot::kuka_lwr4();
-  std::cout << lab::machine_line() << "\n\n"
+};
+
+void measure_all(const RemovalOptions& options) {
+  const RobotModel model = robot::kuka_lwr4();
+  std::cout << report::machine_line() << "\n\n"
             << "| camera m | time error ms | with readings | pixels with robot | ms | slowest pose, ms |\n"
             << "|---|---|---|---|---|---|\n"
             << std::flush;
   for (const double distance_m : {1.0, 2.0, 3.0}) {
     for (const double time_error_s : {0.0, 0.05}) {
       for (const bool with_reading : {false, true}) {
-        lab::measure(model, distance_m, time_error_s, with_reading, poses, repetitions);
+        measure(model, distance_m, time_error_s, with_reading, options.poses, options.repetitions);
       }
     }
   }
-  return 0;
 }
+
+}  // namespace
+
+void add_robot_removal_command(CLI::App& app) {
+  const auto options = std::make_shared<RemovalOptions>();
+  CLI::App* const command = app.add_subcommand(
+      "robot-removal",
+      "time of joint positions, kinematics, padding and the robot's interval in one 640x480 image, one core: a minute");
+  command->add_option("--poses", options->poses, "random joint positions a row")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--repetitions", options->repetitions, "images a pose")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->callback([options] { measure_all(*options); });
+}
+
+}  // namespace depthgrid::lab

@@ -1,46 +1,37 @@
 // How fast the simulated workcell runs on one core: depth images by ray casting, sensors, true distances.
-#include <algorithm>
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <ctime>
 #include <functional>
-#include <iostream>
 #include <string>
 #include <vector>
 
 #include "depthgrid/simulation/arrangement.hpp"
 #include "depthgrid/simulation/simulated_sensors.hpp"
-#include "lab/machine.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
 #include "lab/workcell/cell_truth.hpp"
 #include "lab/workcell/depth_caster.hpp"
 #include "lab/workcell/workcell_scene.hpp"
+#include "report/machine.hpp"
 
+namespace depthgrid::lab {
 namespace {
 
-using depthgrid::DepthImage;
-using depthgrid::lab::ArmShape;
-using depthgrid::lab::WorkcellScene;
-using depthgrid::simulation::Motion;
+using simulation::Motion;
 
 constexpr int kFrames = 60;
 constexpr double kFrameTime = 0.1;
 
-/// Processor time of all threads, which other programs do not stretch as they do the time on the wall.
-double process_ms() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
-/// Median milliseconds of a call for each frame.
+/// Median milliseconds of a call for each frame: processor time of all threads.
 double median_ms(const std::function<void(int)>& frame) {
-  std::vector<double> times;
+  Samples times_ms;
   for (int i = 0; i < kFrames; ++i) {
-    const double start_ms = process_ms();
+    const double start_s = process_time_s();
     frame(i);
-    times.push_back(process_ms() - start_ms);
+    times_ms.add(1e3 * (process_time_s() - start_s));
   }
-  std::nth_element(times.begin(), times.begin() + kFrames / 2, times.end());
-  return times[kFrames / 2];
+  return times_ms.median();
 }
 
 void row(const std::string& what, double ms) {
@@ -50,11 +41,11 @@ void row(const std::string& what, double ms) {
 
 /// Two ideal cameras, all poses new in every frame.
 void cast_rows(const char* arm, ArmShape shape, int segments) {
-  const depthgrid::Rig rig = depthgrid::simulation::letter_arrangement("ideal").rig;
+  const Rig rig = simulation::letter_arrangement("ideal").rig;
   WorkcellScene scene(Motion::carry_box, 1, shape, segments);
-  depthgrid::workcell::DepthCaster caster(scene.at(0));
+  workcell::DepthCaster caster(scene.at(0));
   std::vector<DepthImage> images(2);
-  depthgrid::workcell::BodyImage bodies;
+  workcell::BodyImage bodies;
   const auto two_cameras = [&](int frame) {
     caster.update(scene.at(frame * kFrameTime));
     for (std::size_t k = 0; k < 2; ++k) {
@@ -70,51 +61,52 @@ void cast_rows(const char* arm, ArmShape shape, int segments) {
 }
 
 void sensor_row(const char* sensor, std::vector<bool> vibrating) {
-  const depthgrid::Rig rig = depthgrid::simulation::letter_arrangement(sensor).rig;
+  const Rig rig = simulation::letter_arrangement(sensor).rig;
   WorkcellScene scene(Motion::carry_box, 1, ArmShape::capsules);
-  const depthgrid::workcell::DepthCaster caster(scene.at(3));
+  const workcell::DepthCaster caster(scene.at(3));
   std::vector<DepthImage> ideal(2);
   std::vector<DepthImage> measured(2);
   for (std::size_t k = 0; k < 2; ++k) {
     caster.render(rig.cameras[k].intrinsics, rig.cameras[k].T_world_camera, ideal[k]);
   }
-  depthgrid::simulation::SensorGroupSettings settings;
+  simulation::SensorGroupSettings settings;
   settings.vibrating = std::move(vibrating);
-  depthgrid::simulation::SimulatedSensors sensors(rig, settings);
+  simulation::SimulatedSensors sensors(rig, settings);
   row(std::string("two images of sensor ") + sensor,
       median_ms([&](int frame) { sensors.measure(ideal, static_cast<std::uint64_t>(frame), measured); }));
 }
 
 void truth_row(const char* arm, ArmShape shape) {
-  using depthgrid::simulation::BodyKind;
+  using simulation::BodyKind;
   WorkcellScene scene(Motion::carry_box, 1, shape, 32);
-  depthgrid::workcell::CellTruth truth(scene.at(0));
+  workcell::CellTruth truth(scene.at(0));
   row(std::string("true distance, person and objects to the arm, ") + arm, median_ms([&](int frame) {
         truth.update(scene.at(frame * kFrameTime));
         (void)truth.nearest(BodyKind::robot, {BodyKind::person, BodyKind::object});
       }));
 }
 
+void measure_all() {
+  std::printf("%s\n\n", report::machine_line().c_str());
+  std::printf("| %-66s | %8s | %7s |\n|%s|%s|%s|\n", "640 x 480 pixels, one core, processor time, median", "ms",
+              "a second", std::string(68, '-').c_str(), std::string(10, '-').c_str(), std::string(9, '-').c_str());
+  cast_rows("arm of capsules", ArmShape::capsules, 0);
+  cast_rows("arm of meshes (7 x 1 k triangles)", ArmShape::meshes, 32);
+  cast_rows("arm of meshes (7 x 9 k triangles)", ArmShape::meshes, 96);
+  sensor_row("ideal", {});
+  sensor_row("kinect_v1", {});
+  sensor_row("kinect_v1", {false, true});
+  sensor_row("realsense_d435", {});
+  sensor_row("azure_kinect_nfov", {});
+  truth_row("capsules", ArmShape::capsules);
+  truth_row("meshes", ArmShape::meshes);
+}
+
 }  // namespace
 
-int main() {
-  try {
-    std::printf("%s\n\n", depthgrid::lab::machine_line().c_str());
-    std::printf("| %-66s | %8s | %7s |\n|%s|%s|%s|\n", "640 x 480 pixels, one core, processor time, median", "ms",
-                "a second", std::string(68, '-').c_str(), std::string(10, '-').c_str(), std::string(9, '-').c_str());
-    cast_rows("arm of capsules", ArmShape::capsules, 0);
-    cast_rows("arm of meshes (7 x 1 k triangles)", ArmShape::meshes, 32);
-    cast_rows("arm of meshes (7 x 9 k triangles)", ArmShape::meshes, 96);
-    sensor_row("ideal", {});
-    sensor_row("kinect_v1", {});
-    sensor_row("kinect_v1", {false, true});
-    sensor_row("realsense_d435", {});
-    sensor_row("azure_kinect_nfov", {});
-    truth_row("capsules", ArmShape::capsules);
-    truth_row("meshes", ArmShape::meshes);
-  } catch (const std::exception& error) {
-    std::cerr << "depthgrid_workcell_rate: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+void add_workcell_rate_command(CLI::App& workcell) {
+  workcell.add_subcommand("rate", "depth images, sensors and true distances a second, one core: a minute")
+      ->callback([] { measure_all(); });
 }
+
+}  // namespace depthgrid::lab

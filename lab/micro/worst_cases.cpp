@@ -1,7 +1,6 @@
 // The search where it is slowest: noise, everything hidden, points in obstacles and on cameras; with and without a
 // budget. Writes a Markdown table to standard output; docs/worst-cases.md is what it printed.
-#include <algorithm>
-#include <chrono>
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
 #include <random>
@@ -9,16 +8,17 @@
 #include <vector>
 
 #include "depthgrid/search/search.hpp"
-#include "lab/machine.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
 #include "lab/workload/workload.hpp"
+#include "report/machine.hpp"
 
 namespace depthgrid::lab {
 namespace {
 
 constexpr int kRepetitions = 3;
 constexpr std::size_t kPixels = 640UL * 480UL;
-
-using Clock = std::chrono::steady_clock;
 
 struct Scene {
   std::string name;
@@ -37,18 +37,17 @@ Case run(const views::ViewStore& store, const std::vector<Capsule>& points, cons
   search::Search searcher;
   std::vector<search::Answer> answers(points.size());
   const views::Snapshot snapshot = store.snapshot();
-  std::vector<double> times_ms;
+  Samples times_ms;
   Case result;
   for (int repetition = 0; repetition < kRepetitions; ++repetition) {
     search::Count count;
-    const auto start = Clock::now();
+    const Stopwatch watch;
     searcher.distances(snapshot, points, answers, budget, &count);
-    times_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    times_ms.add(1e3 * watch.elapsed_s());
     result.cubes = count.nodes;
   }
-  std::sort(times_ms.begin(), times_ms.end());
-  result.median_ms = times_ms[times_ms.size() / 2];
-  result.most_ms = times_ms.back();
+  result.median_ms = times_ms.median();
+  result.most_ms = times_ms.largest();
   for (const search::Answer& answer : answers) {
     result.unfinished += answer.nearest.budget ? 1 : 0;
     result.mean_m += answer.nearest.distance_m / static_cast<double>(answers.size());
@@ -68,9 +67,7 @@ views::Settings settings_for(int cameras, double reach_m) {
   return settings;
 }
 
-}  // namespace
-
-int write_table() {
+void write_table() {
   const auto checker = [](std::mt19937&, int, int u, int v) -> std::uint16_t {
     return (u / 2 + v / 2) % 2 == 0 ? 3500 : 1500;
   };
@@ -138,10 +135,14 @@ int write_table() {
       }
     }
   }
-  std::printf("\nOn: %s\n", machine_line().c_str());
-  return 0;
+  std::printf("\nOn: %s\n", report::machine_line().c_str());
+}
+
+}  // namespace
+
+void add_worst_cases_command(CLI::App& app) {
+  app.add_subcommand("worst-cases", "the search where it is slowest, the table of docs/worst-cases.md: some minutes")
+      ->callback([] { write_table(); });
 }
 
 }  // namespace depthgrid::lab
-
-int main() { return depthgrid::lab::write_table(); }

@@ -9,8 +9,9 @@
 #include "depthgrid/search/search.hpp"
 #include "lab/recordings/ball_study.hpp"
 #include "lab/recordings/cameras.hpp"
-#include "lab/recordings/figures.hpp"
 #include "lab/recordings/margin_settings.hpp"
+#include "report/number_text.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 
@@ -186,17 +187,19 @@ std::string ball_search_tables(const std::vector<BallSearchFigures>& rows) {
   for (const BallSearchFigures& f : rows) {
     const auto all = static_cast<double>(f.answers);
     out << "| " << f.setting << " | " << f.cameras << " | " << f.answers << " | "
-        << share(static_cast<double>(f.at_ball), all) << " | " << millimetres(quantile(f.errors_m, 0.5)) << " mm | "
-        << millimetres(quantile(f.errors_m, 0.05)) << " ... " << millimetres(quantile(f.errors_m, 0.95)) << " mm | "
-        << f.tested << " | " << f.over << " | " << f.over_absent << " | " << f.over_own << " | " << f.over_2cm << " | "
-        << f.over_5cm << " | " << millimetres(f.largest_m) << " mm |\n";
+        << report::percent_of(static_cast<double>(f.at_ball), all) << " | "
+        << report::signed_millimetres(report::quantile(f.errors_m, 0.5)) << " mm | "
+        << report::signed_millimetres(report::quantile(f.errors_m, 0.05)) << " ... "
+        << report::signed_millimetres(report::quantile(f.errors_m, 0.95)) << " mm | " << f.tested << " | " << f.over
+        << " | " << f.over_absent << " | " << f.over_own << " | " << f.over_2cm << " | " << f.over_5cm << " | "
+        << report::signed_millimetres(f.largest_m) << " mm |\n";
   }
   out << "\n| margins | cameras | measured | occluded | unmeasured | nothing within rho | other |\n"
          "|---|---|---|---|---|---|---|\n";
   for (const BallSearchFigures& f : rows) {
     out << "| " << f.setting << " | " << f.cameras;
     for (const std::size_t count : f.states) {
-      out << " | " << share(static_cast<double>(count), static_cast<double>(f.answers));
+      out << " | " << report::percent_of(static_cast<double>(count), static_cast<double>(f.answers));
     }
     out << " |\n";
   }

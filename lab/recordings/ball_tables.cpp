@@ -6,7 +6,8 @@
 #include <sstream>
 #include <vector>
 
-#include "lab/recordings/figures.hpp"
+#include "report/number_text.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 
@@ -47,13 +48,14 @@ void error_table(const BallStudy& study, std::size_t most, std::ostream& out) {
     for (std::size_t n = 1; n <= most; ++n) {
       const BallFigures f = ball_figures(result, n);
       out << "| " << result.setting.name << " | " << n << " | " << f.answers << " | "
-          << share(static_cast<double>(f.at_ball), static_cast<double>(f.answers)) << " | "
-          << millimetres(f.error_median_m) << " mm | " << millimetres(f.error_5_m) << " ... "
-          << millimetres(f.error_95_m) << " mm | " << millimetres(f.error_largest_m) << " mm | " << f.tested << " | "
-          << f.violations << " (" << share(static_cast<double>(f.violations), static_cast<double>(f.tested)) << ") | "
+          << report::percent_of(static_cast<double>(f.at_ball), static_cast<double>(f.answers)) << " | "
+          << report::signed_millimetres(f.error_median_m) << " mm | " << report::signed_millimetres(f.error_5_m)
+          << " ... " << report::signed_millimetres(f.error_95_m) << " mm | "
+          << report::signed_millimetres(f.error_largest_m) << " mm | " << f.tested << " | " << f.violations << " ("
+          << report::percent_of(static_cast<double>(f.violations), static_cast<double>(f.tested)) << ") | "
           << f.violations_unseen << " | "
-          << (f.violations > 0 ? millimetres(f.worst_excess_m) + " mm" : std::string("-")) << " | "
-          << number(milliseconds_per_answer(result, n), 2) << " |\n";
+          << (f.violations > 0 ? report::signed_millimetres(f.worst_excess_m) + " mm" : std::string("-")) << " | "
+          << report::fixed(milliseconds_per_answer(result, n), 2) << " |\n";
     }
   }
 }
@@ -67,10 +69,11 @@ void shadow_table(const BallStudy& study, const Rig& rig, std::ostream& out) {
       const ShadowFigures f = shadow_figures(result, k);
       const auto all = static_cast<double>(f.points);
       out << "| " << result.setting.name << " | " << rig.cameras[k].id << " | " << f.points << " | " << f.shadow_one
-          << " (" << share(static_cast<double>(f.shadow_one), all) << ") | "
-          << share(static_cast<double>(f.unmeasured), static_cast<double>(f.shadow_one)) << " of them | "
-          << f.shadow_all << " (" << share(static_cast<double>(f.shadow_all), all) << ") | " << f.one_not_all << " ("
-          << share(static_cast<double>(f.one_not_all), static_cast<double>(f.shadow_one)) << " of them) | "
+          << " (" << report::percent_of(static_cast<double>(f.shadow_one), all) << ") | "
+          << report::percent_of(static_cast<double>(f.unmeasured), static_cast<double>(f.shadow_one)) << " of them | "
+          << f.shadow_all << " (" << report::percent_of(static_cast<double>(f.shadow_all), all) << ") | "
+          << f.one_not_all << " ("
+          << report::percent_of(static_cast<double>(f.one_not_all), static_cast<double>(f.shadow_one)) << " of them) | "
           << f.now_measured << " | " << f.now_none << " |\n";
     }
   }
@@ -111,9 +114,9 @@ BallFigures ball_figures(const SettingResult& result, std::size_t camera_count) 
       }
     }
   }
-  f.error_median_m = quantile(errors, 0.5);
-  f.error_5_m = quantile(errors, 0.05);
-  f.error_95_m = quantile(errors, 0.95);
+  f.error_median_m = report::quantile(errors, 0.5);
+  f.error_5_m = report::quantile(errors, 0.05);
+  f.error_95_m = report::quantile(errors, 0.95);
   return f;
 }
 
@@ -157,8 +160,10 @@ std::string ball_tables(const BallStudy& study, const Rig& rig) {
   for (const auto& [set, area] : study.gray) {
     const auto frames = static_cast<double>(study.frames);
     out << "| " << rig.cameras[set.front()].id << " | " << names(rig, set, 1) << " | "
-        << number(area.workspace_m3 / frames, 2) << " m^3 | " << share(area.gray_m3, area.workspace_m3) << " | "
-        << share(area.freed_letter_m3, area.gray_m3) << " | " << share(area.freed_corrected_m3, area.gray_m3) << " |\n";
+        << report::fixed(area.workspace_m3 / frames, 2) << " m^3 | "
+        << report::percent_of(area.gray_m3, area.workspace_m3) << " | "
+        << report::percent_of(area.freed_letter_m3, area.gray_m3) << " | "
+        << report::percent_of(area.freed_corrected_m3, area.gray_m3) << " |\n";
   }
   out << "\n### Shadow obstacles\n\n";
   shadow_table(study, rig, out);

@@ -1,36 +1,24 @@
 #include "lab/recordings/ball_track.hpp"
 
-#include <rapidjson/document.h>
-#include <rapidjson/istreamwrapper.h>
-
-#include <cstdlib>
-#include <fstream>
-
-#include "depthgrid/core/error.hpp"
+#include "lab/measure/json_file.hpp"
 
 namespace depthgrid::lab {
 
 BallTrack load_ball_track(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  rapidjson::IStreamWrapper wrapper(stream);
-  rapidjson::Document json;
-  json.ParseStream(wrapper);
-  if (!stream.is_open() || json.HasParseError() || !json.IsObject() || !json.HasMember("radius_m") ||
-      !json.HasMember("frames")) {
-    fail("cannot read the ball's track from ", file.string());
-  }
+  const Json json = read_json_file(file, "track of the ball", {"radius_m", "frames"});
+  const auto position = [](const Json& p_m) {
+    return Eigen::Vector3d(p_m.at(0).get<double>(), p_m.at(1).get<double>(), p_m.at(2).get<double>());
+  };
   BallTrack track;
-  track.radius_m = json["radius_m"].GetDouble();
-  for (const auto& frame : json["frames"].GetArray()) {
-    const auto& centre = frame["centre_world_m"];
-    if (centre.IsArray() && centre.Size() == 3) {
-      track.centre_world[frame["frame"].GetInt()] = {centre[0].GetDouble(), centre[1].GetDouble(),
-                                                     centre[2].GetDouble()};
+  track.radius_m = json["radius_m"];
+  for (const Json& frame : json["frames"]) {
+    const int number = frame.at("frame");
+    const Json centre = frame.value("centre_world_m", Json());
+    if (centre.is_array() && centre.size() == 3) {
+      track.centre_world[number] = position(centre);
     }
-    for (const auto& seen : frame["seen"].GetObject()) {
-      const auto& own = seen.value["centre_world_m"];
-      track.fits[frame["frame"].GetInt()][seen.name.GetString()] = {
-          {own[0].GetDouble(), own[1].GetDouble(), own[2].GetDouble()}, seen.value["fitted_radius_m"].GetDouble()};
+    for (const auto& [camera, own] : frame.at("seen").items()) {
+      track.fits[number][camera] = {position(own.at("centre_world_m")), own.at("fitted_radius_m").get<double>()};
     }
   }
   return track;
@@ -43,11 +31,6 @@ std::optional<BallFit> BallTrack::fit(int frame, const std::string& camera) cons
   }
   const auto found = of_frame->second.find(camera);
   return found == of_frame->second.end() ? std::nullopt : std::optional<BallFit>(found->second);
-}
-
-std::filesystem::path recording_folder(const std::string& name) {
-  const char* data = std::getenv("DEPTHGRID_DATA");
-  return std::filesystem::path(data != nullptr && *data != '\0' ? data : "../shared/data") / name;
 }
 
 }  // namespace depthgrid::lab

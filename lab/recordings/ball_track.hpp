@@ -26,7 +26,4 @@ struct BallTrack {
 /// Reads ball.json. Throws Error that names the file.
 BallTrack load_ball_track(const std::filesystem::path& file);
 
-/// The folder of a recording: $DEPTHGRID_DATA/name, by default ../shared/data/name from the current folder.
-std::filesystem::path recording_folder(const std::string& name);
-
 }  // namespace depthgrid::lab

@@ -8,10 +8,12 @@
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/files/recording.hpp"
 #include "depthgrid/grid/evaluation.hpp"
+#include "lab/measure/recording_folder.hpp"
 #include "lab/recordings/ball_track.hpp"
 #include "lab/recordings/cameras.hpp"
-#include "lab/recordings/figures.hpp"
 #include "lab/recordings/gray_area.hpp"
+#include "report/number_text.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 
@@ -91,10 +93,11 @@ std::string kitchen_tables() {
       const Row& row = rows[n];
       const auto all = static_cast<double>(row.answers);
       out << "| " << kNames[which] << " | " << n << " | " << row.answers << " | "
-          << share(static_cast<double>(row.measured), all) << " | " << share(static_cast<double>(row.shadow), all)
-          << " | " << share(static_cast<double>(row.nothing), all) << " | "
-          << number(1e3 * quantile(row.distances_m, 0.5), 0) << " mm | " << row.above << " ("
-          << share(static_cast<double>(row.above), all) << ") |\n";
+          << report::percent_of(static_cast<double>(row.measured), all) << " | "
+          << report::percent_of(static_cast<double>(row.shadow), all) << " | "
+          << report::percent_of(static_cast<double>(row.nothing), all) << " | "
+          << report::fixed(1e3 * report::quantile(row.distances_m, 0.5)) << " mm | " << row.above << " ("
+          << report::percent_of(static_cast<double>(row.above), all) << ") |\n";
     }
   }
   out << "\n| principal | other cameras | grid in the workspace | gray | freed, letter's test | freed, whole cell seen "
@@ -107,9 +110,10 @@ std::string kitchen_tables() {
       }
       GrayArea area;
       add_gray_area(rig, set, images, cells, workspace, area);
-      out << "| " << rig.cameras[principal].id << " | all three | " << number(area.workspace_m3, 2) << " m^3 | "
-          << share(area.gray_m3, area.workspace_m3) << " | " << share(area.freed_letter_m3, area.gray_m3) << " | "
-          << share(area.freed_corrected_m3, area.gray_m3) << " |\n";
+      out << "| " << rig.cameras[principal].id << " | all three | " << report::fixed(area.workspace_m3, 2) << " m^3 | "
+          << report::percent_of(area.gray_m3, area.workspace_m3) << " | "
+          << report::percent_of(area.freed_letter_m3, area.gray_m3) << " | "
+          << report::percent_of(area.freed_corrected_m3, area.gray_m3) << " |\n";
     }
   }
   return out.str();

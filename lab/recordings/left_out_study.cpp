@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depthgrid/core/error.hpp"
+#include "lab/measure/recording_folder.hpp"
 #include "lab/recordings/ball_track.hpp"
 #include "lab/recordings/cameras.hpp"
 

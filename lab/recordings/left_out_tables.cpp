@@ -1,14 +1,15 @@
 #include <sstream>
 
-#include "lab/recordings/figures.hpp"
 #include "lab/recordings/left_out_study.hpp"
+#include "report/number_text.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::lab {
 
 namespace {
 
 std::string excess(const LeftOutFigures& f, double q) {
-  return f.excesses_m.empty() ? "-" : number(1e3 * quantile(f.excesses_m, q), 0) + " mm";
+  return f.excesses_m.empty() ? "-" : report::fixed(1e3 * report::quantile(f.excesses_m, q)) + " mm";
 }
 
 std::string freed_by(const LeftOutFigures& f) {
@@ -29,10 +30,10 @@ std::string left_out_tables(const std::vector<LeftOutRow>& rows) {
     const LeftOutFigures& f = row.figures;
     const auto all = static_cast<double>(f.readings);
     out << "| " << row.setting << " | " << row.left_out << " | " << f.readings << " | "
-        << share(static_cast<double>(f.free_before), all) << " | " << f.violations << " ("
-        << percent(static_cast<double>(f.violations), all) << ") | " << f.far_violations << " ("
-        << percent(static_cast<double>(f.far_violations), all) << ") | " << excess(f, 0.5) << " | " << excess(f, 0.95)
-        << " | " << excess(f, 1.0) << " |\n";
+        << report::percent_of(static_cast<double>(f.free_before), all) << " | " << f.violations << " ("
+        << report::percent_of(static_cast<double>(f.violations), all, 2) << ") | " << f.far_violations << " ("
+        << report::percent_of(static_cast<double>(f.far_violations), all, 2) << ") | " << excess(f, 0.5) << " | "
+        << excess(f, 0.95) << " | " << excess(f, 1.0) << " |\n";
   }
   out << "\n| margins | left out | violations |";
   for (std::size_t i = 0; i < kLeftOutCauses; ++i) {
@@ -47,10 +48,11 @@ std::string left_out_tables(const std::vector<LeftOutRow>& rows) {
     const LeftOutFigures& f = row.figures;
     out << "| " << row.setting << " | " << row.left_out << " | " << f.violations << " |";
     for (const std::size_t count : f.causes) {
-      out << ' ' << share(static_cast<double>(count), static_cast<double>(f.violations)) << " |";
+      out << ' ' << report::percent_of(static_cast<double>(count), static_cast<double>(f.violations)) << " |";
     }
-    out << ' ' << share(static_cast<double>(f.edge_readings), static_cast<double>(f.readings)) << " | "
-        << share(static_cast<double>(f.on_floor), static_cast<double>(f.violations)) << " | " << freed_by(f) << " |\n";
+    out << ' ' << report::percent_of(static_cast<double>(f.edge_readings), static_cast<double>(f.readings)) << " | "
+        << report::percent_of(static_cast<double>(f.on_floor), static_cast<double>(f.violations)) << " | "
+        << freed_by(f) << " |\n";
   }
   return out.str();
 }

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
 #include "lab/peers/search_peer.hpp"
 #include "lab/speed/record.hpp"
-#include "lab/measure/samples.hpp"
 
 namespace depthgrid::lab {
 

@@ -1,19 +1,22 @@
-// Numbers for Markdown.
+// Numbers of the page: seconds, metres and counts as it shows them; "-" for NaN.
 #pragma once
 
+#include <cmath>
 #include <string>
+
+#include "report/number_text.hpp"
 
 namespace depthgrid::lab {
 
-/// Three significant digits without exponent: "0.0123", "4.56", "12300"; "-" for NaN.
-[[nodiscard]] std::string digits3(double value);
-/// As a whole number with blanks between thousands; "-" for NaN.
-[[nodiscard]] std::string whole(double value);
-
-/// Seconds, metres and counts as the page shows them; "-" for NaN.
-[[nodiscard]] std::string milliseconds(double value_s);
-[[nodiscard]] std::string microseconds(double value_s);
+[[nodiscard]] inline std::string whole(double value) {
+  return std::isfinite(value) ? report::grouped(std::llround(value)) : "-";
+}
+[[nodiscard]] inline std::string milliseconds(double value_s) { return report::three_digits(1e3 * value_s); }
+[[nodiscard]] inline std::string microseconds(double value_s) { return report::three_digits(1e6 * value_s); }
 /// To a tenth below 10 mm, else whole.
-[[nodiscard]] std::string millimetres(double value_m);
+[[nodiscard]] inline std::string millimetres(double value_m) {
+  const double value = std::round(1e4 * value_m) / 10;
+  return value >= 10 ? whole(value) : report::three_digits(value).substr(0, 3);
+}
 
 }  // namespace depthgrid::lab

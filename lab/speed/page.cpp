@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <utility>
 
-#include "depthgrid/core/error.hpp"
+#include "depthgrid/files/text_file.hpp"
 #include "lab/speed/number_text.hpp"
 #include "lab/speed/page_parts.hpp"
 #include "lab/speed/page_text.hpp"
@@ -36,10 +35,10 @@ void write_cycle(std::ostream& page, const Report& report) {
       return report.number(name, group, row, {{"cameras", cameras}});
     };
     head.emplace_back(title);
-    rate.push_back(digits3(number("nine points", 2, "calls_per_s")));
+    rate.push_back(report::three_digits(number("nine points", 2, "calls_per_s")));
     cycle.push_back(milliseconds(number("cycle", 2, "call_median_s")));
     eight.push_back(milliseconds(number("cycle", 8, "call_median_s")));
-    over.push_back(digits3(1e3 * number("errors", 2, "over_max_m")));
+    over.push_back(report::three_digits(1e3 * number("errors", 2, "over_max_m")));
   }
   report::MarkdownTable table(head);
   for (const auto& row : {rate, cycle, eight, over}) {
@@ -58,7 +57,7 @@ void write_peers(std::ostream& page, const Report& report) {
     const Record* row = report.find("side by side, W", name, {{"cameras", 2}});
     if (row != nullptr) {
       const Record& r = *row;
-      table.row({name, milliseconds(r["cycle_median_s"]), digits3(r["cycle_median_s"] / r["our_cycle_median_s"]),
+      table.row({name, milliseconds(r["cycle_median_s"]), report::three_digits(r["cycle_median_s"] / r["our_cycle_median_s"]),
                  milliseconds(r["nine_median_s"]), r["counts_occluded"] != 0 ? "yes" : "no",
                  millimetres(r["over_max_m"])});
     }
@@ -101,15 +100,6 @@ std::string details(const std::string& images, const Report& report) {
   return page.str();
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  if (!out) {
-    fail(file.string(), ": cannot be written");
-  }
-}
-
 }  // namespace
 
 void write_page(const std::string& file, const std::string& images, const Report& report) {
@@ -118,8 +108,8 @@ void write_page(const std::string& file, const std::string& images, const Report
   std::error_code failed;  // then writing says so
   fs::create_directories(folder, failed);
   const fs::path plots(images);
-  write(file, summary(images, report));
-  write(folder / "benchmark-search.md",
+  files::write_text_file(file, summary(images, report));
+  files::write_text_file(folder / "benchmark-search.md",
         details(plots.is_absolute() ? images : plots.lexically_relative("docs").string(), report));
 }
 

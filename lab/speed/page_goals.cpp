@@ -18,7 +18,9 @@ void write_goals(std::ostream& page, const std::vector<Goal>& all) {
   for (const Goal& goal : all) {
     std::vector<std::string> cells{goal.what, goal.bound_text};
     for (const double value : goal.values) {
-      cells.insert(cells.end(), {digits3(value), std::isnan(value) ? "" : goal.met(value) ? "yes" : "**MISSED**"});
+      cells.insert(cells.end(), {report::three_digits(value), std::isnan(value) ? ""
+                                                              : goal.met(value) ? "yes"
+                                                                                : "**MISSED**"});
     }
     table.row(cells);
   }
@@ -42,7 +44,7 @@ void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report
       const double cameras = (*row)["cameras"];
       if (std::isfinite(nodes) && (cameras == 2 || cameras == 8)) {
         table.row({row->name, workload, whole(cameras), microseconds((*row)["call_mean_s"]), whole(nodes),
-                   whole((*row)["ball_tests_mean"]), digits3(1e9 * (*row)["call_mean_s"] / nodes)});
+                   whole((*row)["ball_tests_mean"]), report::three_digits(1e9 * (*row)["call_mean_s"] / nodes)});
       }
     }
   }

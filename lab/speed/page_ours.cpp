@@ -20,9 +20,9 @@ void write_rates(std::ostream& page, const Report& report) {
     for (const Record* row : rows) {
       const Record& r = *row;
       if (r.name != "errors" && !std::isnan(r["call_mean_s"])) {
-        table.row({r.name, whole(r["cameras"]), digits3(1 / r["call_mean_s"]), milliseconds(r["call_median_s"]),
-                   milliseconds(r["call_p99_s"]), milliseconds(r["call_p999_s"]), milliseconds(r["call_max_s"]),
-                   milliseconds(r["first_median_s"]), whole(r["call_count"])});
+        table.row({r.name, whole(r["cameras"]), report::three_digits(1 / r["call_mean_s"]),
+                   milliseconds(r["call_median_s"]), milliseconds(r["call_p99_s"]), milliseconds(r["call_p999_s"]),
+                   milliseconds(r["call_max_s"]), milliseconds(r["first_median_s"]), whole(r["call_count"])});
       }
     }
     page << table.text() << "\n\n";
@@ -38,7 +38,7 @@ void write_errors(std::ostream& page, const Report& report) {
     for (const Record* row : report.group(std::string("ours, ") + workload)) {
       const Record& r = *row;
       if (r.name == "errors") {
-        errors.row({workload, whole(r["cameras"]), whole(r["over_count"]), digits3(1e3 * r["over_max_m"]),
+        errors.row({workload, whole(r["cameras"]), whole(r["over_count"]), report::three_digits(1e3 * r["over_max_m"]),
                     millimetres(r["under_median_m"]), millimetres(r["under_p95_m"]), millimetres(r["under_p99_m"]),
                     millimetres(r["under_max_m"]), whole(100 * r["measured_share"]) + " %"});
       }
@@ -60,8 +60,8 @@ void write_letter(std::ostream& page, const Report& report) {
         letter.row({workload.key, whole(cameras), milliseconds(time_s("search")),
                     milliseconds(time_s("search, hybrid")), milliseconds(time_s("letter, hybrid")),
                     milliseconds(time_s("letter, minimum")),
-                    digits3(time_s("letter, hybrid") / time_s("search, hybrid")),
-                    digits3(time_s("letter, minimum") / time_s("search"))});
+                    report::three_digits(time_s("letter, hybrid") / time_s("search, hybrid")),
+                    report::three_digits(time_s("letter, minimum") / time_s("search"))});
       }
     }
   }

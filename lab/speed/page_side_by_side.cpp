@@ -31,8 +31,8 @@ void write_table(std::ostream& page, const Report& report, const std::string& wo
     table.row({r.name, milliseconds(r["prepare_median_s"]) + " / " + milliseconds(r["prepare_max_s"]),
                microseconds(r["nine_median_s"]) + " / " + microseconds(r["nine_max_s"]),
                microseconds(r["hundred_median_s"]), microseconds(r["far_median_s"]), microseconds(r["deep_median_s"]),
-               milliseconds(r["cycle_median_s"]), digits3(r["cycle_median_s"] / r["our_cycle_median_s"]),
-               digits3(r["memory_bytes"] / 1e6), yes_no(r["counts_occluded"]), yes_no(r["carves"]),
+               milliseconds(r["cycle_median_s"]), report::three_digits(r["cycle_median_s"] / r["our_cycle_median_s"]),
+               report::three_digits(r["memory_bytes"] / 1e6), yes_no(r["counts_occluded"]), yes_no(r["carves"]),
                errors_text(r, "over"), errors_text(r, "under")});
   }
   if (any) {
@@ -52,8 +52,9 @@ void write_quicker(std::ostream& page, const Report& report) {
     const double nine = r["nine_median_s"] / r["our_nine_median_s"];
     if (cycle < 1 || nine < 1) {
       list << "- " << r.name << ": " << (cycle < 1 ? "cycle" : "") << (cycle < 1 && nine < 1 ? " and " : "")
-           << (nine < 1 ? "query" : "") << " (" << digits3(cycle) << " and " << digits3(nine) << " of ours). Up to "
-           << millimetres(r["over_max_m"]) << " mm too far and " << millimetres(r["under_max_m"]) << " mm too near";
+           << (nine < 1 ? "query" : "") << " (" << report::three_digits(cycle) << " and " << report::three_digits(nine)
+           << " of ours). Up to " << millimetres(r["over_max_m"]) << " mm too far and " << millimetres(r["under_max_m"])
+           << " mm too near";
       if (r["counts_occluded"] == 0) {
         list << "; occluded space does not count";
       } else if (r["carves"] == 0) {
@@ -61,7 +62,7 @@ void write_quicker(std::ostream& page, const Report& report) {
       }
       const double far = r["far_median_s"] / r["nine_median_s"];
       if (far > 2) {
-        list << "; with nothing near its query takes " << digits3(far) << " times as long";
+        list << "; with nothing near its query takes " << report::three_digits(far) << " times as long";
       }
       list << ".\n\n";
     }

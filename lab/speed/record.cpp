@@ -1,40 +1,13 @@
 #include "lab/speed/record.hpp"
 
-#include <rapidjson/document.h>
-#include <rapidjson/istreamwrapper.h>
-#include <rapidjson/ostreamwrapper.h>
-#include <rapidjson/prettywriter.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
+#include <utility>
 
-#include "depthgrid/core/error.hpp"
+#include "lab/measure/json_file.hpp"
 
 namespace depthgrid::lab {
-namespace {
-
-using Writer = rapidjson::PrettyWriter<rapidjson::OStreamWrapper>;
-
-void write_texts(Writer& json, const std::map<std::string, std::string>& texts) {
-  json.StartObject();
-  for (const auto& [key, text] : texts) {
-    json.Key(key.c_str());
-    json.String(text.c_str());
-  }
-  json.EndObject();
-}
-
-std::map<std::string, std::string> read_texts(const rapidjson::Value& object) {
-  std::map<std::string, std::string> texts;
-  for (const auto& member : object.GetObject()) {
-    texts[member.name.GetString()] = member.value.GetString();
-  }
-  return texts;
-}
-
-}  // namespace
 
 double Record::operator[](const std::string& key) const {
   const auto found = numbers.find(key);
@@ -68,68 +41,27 @@ double Report::number(const std::string& key, const std::string& group, const st
 }
 
 void write_json(const std::string& file, const Report& report) {
-  std::ofstream out(file);
-  rapidjson::OStreamWrapper stream(out);
-  Writer json(stream);
-  json.SetIndent(' ', 1);
-  json.SetMaxDecimalPlaces(9);  // nanoseconds, nanometres
-  json.SetFormatOptions(rapidjson::kFormatSingleLineArray);
-  json.StartObject();
-  json.Key("about");
-  write_texts(json, report.about);
-  json.Key("records");
-  json.StartArray();
+  Json records = Json::array();
   for (const Record& record : report.records) {
-    json.StartObject();
-    json.Key("group");
-    json.String(record.group.c_str());
-    json.Key("name");
-    json.String(record.name.c_str());
-    json.Key("numbers");
-    json.StartObject();
+    Json numbers = Json::object();
     for (const auto& [key, value] : record.numbers) {
-      json.Key(key.c_str());
-      if (std::isfinite(value)) {
-        json.Double(value);
-      } else {
-        json.Null();
-      }
+      const bool small = std::abs(value) < 1e3;  // nanoseconds and nanometres are enough
+      numbers[key] = finite(small ? std::round(value * 1e9) / 1e9 : value);
     }
-    json.EndObject();
-    json.Key("texts");
-    write_texts(json, record.texts);
-    json.EndObject();
+    records.push_back(
+        {{"group", record.group}, {"name", record.name}, {"numbers", std::move(numbers)}, {"texts", record.texts}});
   }
-  json.EndArray();
-  json.EndObject();
-  out << '\n';
-  out.close();
-  if (!out) {
-    fail(file, ": cannot be written");
-  }
+  write_json_file(file, {{"about", report.about}, {"records", std::move(records)}});
 }
 
 Report read_json(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) {
-    fail(file, ": cannot be read");
-  }
-  rapidjson::IStreamWrapper stream(in);
-  rapidjson::Document json;
-  json.ParseStream(stream);
-  if (json.HasParseError() || !json.IsObject() || !json.HasMember("about") || !json.HasMember("records")) {
-    fail(file, ": is no report of the benchmark");
-  }
+  const Json json = read_json_file(file, "report of the benchmark", {"about", "records"});
   Report report;
-  report.about = read_texts(json["about"]);
-  for (const auto& row : json["records"].GetArray()) {
-    Record record;
-    record.group = row["group"].GetString();
-    record.name = row["name"].GetString();
-    record.texts = read_texts(row["texts"]);
-    for (const auto& member : row["numbers"].GetObject()) {
-      record.numbers[member.name.GetString()] =
-          member.value.IsNull() ? std::numeric_limits<double>::quiet_NaN() : member.value.GetDouble();
+  json["about"].get_to(report.about);
+  for (const Json& row : json["records"]) {
+    Record record{row.at("group"), row.at("name"), {}, row.at("texts")};
+    for (const auto& [key, value] : row.at("numbers").items()) {
+      record.numbers[key] = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
     }
     report.records.push_back(std::move(record));
   }

@@ -4,9 +4,10 @@
 #include <array>
 #include <limits>
 
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
 #include "lab/peers/search_peer.hpp"
 #include "lab/speed/memory.hpp"
-#include "lab/measure/samples.hpp"
 
 namespace depthgrid::lab {
 namespace {

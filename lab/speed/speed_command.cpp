@@ -2,25 +2,36 @@
 // as JSON, and from them the page and its plots.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
-#include <optional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "lab/machine.hpp"
+#include "depthgrid/core/error.hpp"
+#include "lab/commands.hpp"
+#include "lab/measure/clocks.hpp"
 #include "lab/speed/goals.hpp"
 #include "lab/speed/number_text.hpp"
 #include "lab/speed/our_figures.hpp"
 #include "lab/speed/page.hpp"
 #include "lab/speed/plots.hpp"
-#include "lab/speed/progress.hpp"
 #include "lab/speed/side_by_side.hpp"
 #include "lab/speed/sweeps.hpp"
+#include "report/machine.hpp"
+#include "report/progress_line.hpp"
 
+namespace depthgrid::lab {
 namespace {
 
-using namespace depthgrid;
-using namespace depthgrid::lab;
+struct SpeedOptions {
+  bool quick = false;
+  bool check = false;
+  std::vector<int> cameras;
+  std::string from;
+  std::string json;
+  std::string page;
+  std::string images;
+};
 
 constexpr double kLateS = 20 * 60.0;  ///< from then on rows are cut short, so that a run ends within half an hour
 
@@ -73,12 +84,20 @@ Report measure(const Plan& plan) {
   const double per_stage_s = 4 + 4 * plan.ours.limit_s;
   const double per_row_s = plan.side_by_side.limit_s * 0.4;
   const auto stages = static_cast<double>(plan.cameras.size());
-  Progress progress(0.1 * plan.frame_sets * 24 + 3 * stages * per_stage_s +
-                    (stages + 2) * static_cast<double>(kinds.size()) * per_row_s + 8 * per_row_s);
+  const double total_s = 0.1 * plan.frame_sets * 24 + 3 * stages * per_stage_s +
+                         (stages + 2) * static_cast<double>(kinds.size()) * per_row_s + 8 * per_row_s;
+  report::ProgressLine line("speed", 100);
+  const Stopwatch watch;
+  double done_s = 0;
+  double current_s = 0;
+  const auto step = [&](const std::string& what, double expected_s) {
+    done_s += std::exchange(current_s, expected_s);
+    line.update(static_cast<std::size_t>(std::min(100.0, 100 * done_s / total_s)), what);
+  };
   Report report;
-  report.about["machine"] = machine_line();
+  report.about["machine"] = report::machine_line();
 
-  progress.step("rendering", 0.1 * plan.frame_sets * 24);
+  step("rendering", 0.1 * plan.frame_sets * 24);
   const int rendered = std::max(2, *std::max_element(plan.cameras.begin(), plan.cameras.end()));  // 2: for the sweeps
   const Rig rig = workload_rig(rendered);
   const Workload workload(rendered, plan.frame_sets);
@@ -93,7 +112,7 @@ Report measure(const Plan& plan) {
     Stage removed(without_robot, nullptr, cameras);
     Stage noisy(padded, &noise, cameras);
     const auto measure_one = [&](Stage& stage, const WorkloadName& name, const OurMargins& margins) {
-      progress.step(std::string("ours, ") + name.key + with, per_stage_s);
+      step(std::string("ours, ") + name.key + with, per_stage_s);
       measure_ours(stage, name.key, margins, plan.ours, report);
       if (&stage != &noisy) {
         measure_beside_letter(stage, name.key, plan.ours, report);
@@ -105,9 +124,9 @@ Report measure(const Plan& plan) {
     measure_adversarial(clean, plan.ours, report);
     for (const PeerKind& kind : kinds) {
       const auto beside = [&](Stage& stage, const WorkloadName& name) {
-        progress.step(kind.name + with + ", " + name.key, per_row_s);
+        step(kind.name + with + ", " + name.key, per_row_s);
         SideBySidePlan row_plan = plan.side_by_side;
-        row_plan.limit_s = progress.elapsed_s() > kLateS ? std::min(row_plan.limit_s, 1.0) : row_plan.limit_s;
+        row_plan.limit_s = watch.elapsed_s() > kLateS ? std::min(row_plan.limit_s, 1.0) : row_plan.limit_s;
         measure_side_by_side(stage, kind, name.key, row_plan, report);
       };
       if (cameras > kind.most_cameras) {
@@ -121,64 +140,61 @@ Report measure(const Plan& plan) {
     }
   }
   Stage two(workload, nullptr, 2);
-  progress.step("number of points", 2 * per_row_s);
+  step("number of points", 2 * per_row_s);
   sweep_points(two, swept, plan.sweeps, report);
-  progress.step("rho", 2 * per_row_s);
+  step("rho", 2 * per_row_s);
   sweep_rho(two, swept, plan.sweeps, report);
-  progress.step("resolution", 2 * per_row_s);
+  step("resolution", 2 * per_row_s);
   sweep_resolution(two, plan.sweeps, report);
-  progress.step("size of the images", 2 * per_row_s);
+  step("size of the images", 2 * per_row_s);
   sweep_image(swept, plan.sweeps, report);
-  progress.finish();
-  report.about["run"] = std::to_string(plan.frame_sets) + " frame sets, " + digits3(progress.elapsed_s() / 60) +
-                        " minutes" + (plan.skipped.empty() ? "." : "; a quick run: its figures are no measurement.");
+  report.about["run"] = std::to_string(plan.frame_sets) + " frame sets, " +
+                        report::three_digits(watch.elapsed_s() / 60) + " minutes" +
+                        (plan.skipped.empty() ? "." : "; a quick run: its figures are no measurement.");
   return report;
+}
+
+void run(const SpeedOptions& options) {
+  Plan plan = options.quick ? quick_plan() : Plan();
+  if (!options.cameras.empty()) {
+    plan.cameras = options.cameras;
+  }
+  const Report report = !options.from.empty() ? read_json(options.from) : measure(plan);
+  if (!options.json.empty()) {
+    write_json(options.json, report);
+  }
+  if (!options.images.empty()) {
+    draw_plots(options.images, report);
+  }
+  if (!options.page.empty()) {
+    write_page(options.page, options.images, report);
+  }
+  const std::string broken = options.check ? broken_claim(report) : std::string();
+  if (!broken.empty()) {
+    fail(broken);
+  }
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CLI::App app{"The sound search beside what would be used instead, one core."};
-  bool quick = false;
-  bool check = false;
-  std::vector<int> cameras;
-  std::string from;
-  std::string json;
-  std::string page;
-  std::string images;
-  app.add_flag("--quick", quick, "about a minute; for looking at the page, not at its figures");
-  app.add_option("--cameras", cameras, "numbers of cameras (default 1,2,4,8; quick 2,8); goals and most tables want 2")
+void add_speed_command(CLI::App& app) {
+  const auto options = std::make_shared<SpeedOptions>();
+  CLI::App* const command = app.add_subcommand(
+      "speed", "the sound search beside what would be used instead, one core: at most 30 minutes, --quick about one");
+  command->add_flag("--quick", options->quick, "for looking at the page, not at its figures");
+  command
+      ->add_option("--cameras", options->cameras,
+                   "numbers of cameras (default 1,2,4,8; quick 2,8); goals and most tables want 2")
       ->delimiter(',')
       ->check(CLI::Range(1, kWorkloadCameras));
-  app.add_flag("--check", check, "fail unless generous ratios hold (never absolute times)");
-  app.add_option("--from", from, "measure nothing, take the numbers from this JSON file");
-  app.add_option("--json", json, "write all numbers");
-  app.add_option("--page", page, "write the page (Markdown); needs --images");
-  app.add_option("--images", images, "draw the plots into this folder, named in the page as given here");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    Plan plan = quick ? quick_plan() : Plan();
-    if (!cameras.empty()) {
-      plan.cameras = cameras;
-    }
-    const Report report = !from.empty() ? read_json(from) : measure(plan);
-    if (!json.empty()) {
-      write_json(json, report);
-    }
-    if (!images.empty()) {
-      draw_plots(images, report);
-    }
-    if (!page.empty()) {
-      write_page(page, images, report);
-    }
-    const std::string broken = check ? broken_claim(report) : std::string();
-    if (!broken.empty()) {
-      std::cerr << "depthgrid_benchmark: " << broken << '\n';
-      return 1;
-    }
-  } catch (const std::exception& error) {
-    std::cerr << "depthgrid_benchmark: " << error.what() << '\n';
-    return 1;
-  }
-  return 0;
+  command->add_flag("--check", options->check, "fail unless generous ratios hold (never absolute times)");
+  command->add_option("--from", options->from, "measure nothing, take the numbers from this JSON file");
+  command->add_option("--json", options->json,
+                      "write all numbers; those of BENCHMARK.md are lab/results/benchmark.json");
+  CLI::Option* const page = command->add_option("--page", options->page, "write the page (Markdown); needs --images");
+  page->needs(command->add_option("--images", options->images,
+                                  "draw the plots into this folder, named in the page as given here"));
+  command->callback([options] { run(*options); });
 }
+
+}  // namespace depthgrid::lab

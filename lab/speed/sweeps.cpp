@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 
+#include "lab/measure/clocks.hpp"
+#include "lab/measure/samples.hpp"
 #include "lab/peers/lattice_peer.hpp"
 #include "lab/peers/search_peer.hpp"
-#include "lab/measure/samples.hpp"
 
 namespace depthgrid::lab {
 namespace {

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <functional>
 
+#include "report/statistics.hpp"
+
 namespace depthgrid::program {
 
 namespace {
@@ -27,11 +29,6 @@ constexpr std::size_t kPairsInTable = 30;
 
 double percent(std::int64_t part, std::int64_t whole) {
   return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
-}
-
-double quantile(std::vector<double> values, double q) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
 }
 
 std::string cameras_text(const files::Recording& recording, const RecordingInfo& info) {
@@ -88,8 +85,8 @@ std::string pair_summary(const std::vector<const PairSurvey*>& pairs) {
     for (const auto* pair : pairs) {
       values.push_back(figure(pair->agreement));
     }
-    return line("%-38s %6.1f %s   %6.1f ... %.1f %s\n", name, quantile(values, 0.5), unit, quantile(values, 0.1),
-                quantile(values, 0.9), unit);
+    return line("%-38s %6.1f %s   %6.1f ... %.1f %s\n", name, report::quantile(values, 0.5), unit,
+                report::quantile(values, 0.1), report::quantile(values, 0.9), unit);
   };
   return line("over %zu pairs                           median      10 %% ... 90 %% of the pairs\n", pairs.size()) +
          row(

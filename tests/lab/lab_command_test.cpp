@@ -1,4 +1,4 @@
-// depthgrid experiment as a user runs it.
+// depthgrid-lab as a user runs it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(Experiment, WritesReportFiguresAndPicture) {
     EXPECT_TRUE(std::filesystem::exists(folder / "report" / file)) << file;
   }
   EXPECT_THAT(read_bytes(folder / "report" / "figures.json"),
-              HasSubstr("depthgrid experiment shadow --seed 2 --quick --frames 3 --width 64"));
+              HasSubstr("depthgrid-lab experiment shadow --seed 2 --quick --frames 3 --width 64"));
 }
 
 struct Broken {
@@ -64,11 +64,40 @@ TEST(Experiment, BrokenCommandsEndInOneLineAndLeaveNothing) {
                           std::string(broken.arguments).find("--frames") != std::string::npos;
     const auto result = run_command(std::string(broken.arguments) + (has_size ? "" : " --frames 1 --width 32"), folder);
     EXPECT_EQ(result.exit_code, broken.exit_code) << broken.arguments;
-    EXPECT_THAT(result.err, StartsWith("depthgrid: ")) << broken.arguments;
+    EXPECT_THAT(result.err, StartsWith("depthgrid-lab: ")) << broken.arguments;
     EXPECT_THAT(result.err, HasSubstr(broken.message)) << broken.arguments;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     EXPECT_EQ(result.out, "") << broken.arguments;
     EXPECT_EQ(folder.entries(), 1U) << broken.arguments << ": something was left behind";
+  }
+}
+
+TEST(Lab, BrokenOptionsEndInOneLine) {
+  const TemporaryFolder folder;
+  for (const char* arguments :
+       {"speedy", "speed --cameras 0", "speed --page page.md", "campaign --seeds 0", "letter", "letter rates",
+        "letter rate --cameras none", "letter errors --scenes -1", "recordings --stride 0", "map-storages --slow",
+        "image-in --frame-sets 0", "robot-removal --poses 0", "control-cycle --cycles 1", "worst-cases now",
+        "workcell pictures none"}) {
+    const auto result = run_command(arguments, folder);
+    EXPECT_EQ(result.exit_code, 2) << arguments;
+    EXPECT_THAT(result.err, StartsWith("depthgrid-lab: ")) << arguments;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+  }
+}
+
+TEST(Lab, ErrorsWhileWorkingEndInOneLine) {
+  const TemporaryFolder folder;
+  (void)folder.write("file", "{}");
+  for (const Broken& broken : {Broken{"campaign --state file", 1, "file: is no state of the campaign"},
+                               Broken{"campaign --page none.md", 1, "none.md: cannot be read"},
+                               Broken{"speed --from file", 1, "file: is no report of the benchmark"},
+                               Broken{"map-storages --quick --page file", 1, "file: lacks the line"}}) {
+    const auto result = run_command(broken.arguments, folder);
+    EXPECT_EQ(result.exit_code, broken.exit_code) << broken.arguments;
+    EXPECT_THAT(result.err, HasSubstr(broken.message)) << broken.arguments;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   }
 }
 

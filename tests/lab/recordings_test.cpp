@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/measure/recording_folder.hpp"
 #include "lab/recordings/ball_search.hpp"
 #include "lab/recordings/ball_study.hpp"
 #include "lab/recordings/ball_tables.hpp"

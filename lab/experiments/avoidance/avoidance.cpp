@@ -6,8 +6,8 @@
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "lab/experiments/experiment_report.hpp"
 #include "lab/experiments/loop/avoidance_run.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "report/markdown_table.hpp"
+#include "report/number_text.hpp"
 #include "report/plot.hpp"
 
 namespace depthgrid::experiments {
@@ -41,9 +41,9 @@ class PathPanel {
       canvas_.line(at(x_m, kTop), at(x_m, kTop - kSide / kScale), {report::Colour{0.87, 0.87, 0.87}, 1});
       canvas_.line(at(kLeft, z_m), at(kLeft + kSide / kScale, z_m), {report::Colour{0.87, 0.87, 0.87}, 1});
       const report::CanvasPoint below = at(x_m, kTop - kSide / kScale);
-      canvas_.text({below.x_px, below.y_px + 16}, fixed(x_m, 2), 12, report::kBlack, report::Align::centre);
+      canvas_.text({below.x_px, below.y_px + 16}, report::fixed(x_m, 2), 12, report::kBlack, report::Align::centre);
       const report::CanvasPoint beside = at(kLeft, z_m);
-      canvas_.text({beside.x_px - 6, beside.y_px + 4}, fixed(z_m, 2), 12, report::kBlack, report::Align::right);
+      canvas_.text({beside.x_px - 6, beside.y_px + 4}, report::fixed(z_m, 2), 12, report::kBlack, report::Align::right);
     }
     canvas_.outline(area(), {report::kBlack, 1});
     canvas_.text({left_px_ + kSide / 2, top_px_ - 10}, name, 15, report::kBlack, report::Align::centre);
@@ -172,10 +172,10 @@ void report_comparison(const Comparison& comparison, const std::vector<Eigen::Ve
                                "vertices reached", "s per vertex", "stopped, s",
                                "stopped with nothing within 0.4 m, s"});
   for (const auto& [method, run] : comparison.runs) {
-    table.row({std::string(title(method)), fixed(run.summary.smallest_person_m, 3), causes(run),
-               fixed(run.summary.in_contact_s, 2), std::to_string(run.vertices),
-               run.vertices > 0 ? fixed(run.duration_s / run.summary.task_share, 3) : "-",
-               fixed(run.summary.stopped_s, 2), fixed(run.summary.false_stop_s, 2)});
+    table.row({std::string(title(method)), report::fixed(run.summary.smallest_person_m, 3), causes(run),
+               report::fixed(run.summary.in_contact_s, 2), std::to_string(run.vertices),
+               run.vertices > 0 ? report::fixed(run.duration_s / run.summary.task_share, 3) : "-",
+               report::fixed(run.summary.stopped_s, 2), report::fixed(run.summary.false_stop_s, 2)});
     report.figures()[comparison.sensor][std::string(key(method))] = figures_of(run);
   }
   report.paragraph("## " + comparison.sensor + " sensor");
@@ -207,7 +207,7 @@ void run_avoidance_experiment(const Options& options, ExperimentReport& report) 
   kinect.sensor = "kinect_v1";
   kinect.removal_padding_m = 0.05;  // 3 sigma and half a step at 2.5 m
   const AvoidanceMotion motion = carrying_person(avoidance_rig(2, width_px, "ideal"), duration_s, options.seed + 1);
-  report.paragraph("A person carries a box to the arm and back (" + motion.name + ", " + fixed(duration_s) +
+  report.paragraph("A person carries a box to the arm and back (" + motion.name + ", " + report::fixed(duration_s) +
                    " s around the nearest time), while the end effector goes round a hexagon of radius 0.2 m at 0.40 "
                    "m/s. Two cameras of " +
                    std::to_string(width_px) + " x " + std::to_string(3 * width_px / 4) +
@@ -231,10 +231,11 @@ void run_avoidance_experiment(const Options& options, ExperimentReport& report) 
     const RunResult& letter = comparison.runs[Method::letter_two];
     const RunResult& search = comparison.runs[Method::search];
     report.headline(comparison.sensor + " sensor: smallest true distance to the person " +
-                    fixed(comparison.runs[Method::none].summary.smallest_person_m, 3) + " m without avoidance, " +
-                    fixed(comparison.runs[Method::letter_one].summary.smallest_person_m, 3) +
-                    " m (letter, 1 camera), " + fixed(letter.summary.smallest_person_m, 3) +
-                    " m (letter, 2 cameras), " + fixed(search.summary.smallest_person_m, 3) +
+                    report::fixed(comparison.runs[Method::none].summary.smallest_person_m, 3) +
+                    " m without avoidance, " +
+                    report::fixed(comparison.runs[Method::letter_one].summary.smallest_person_m, 3) +
+                    " m (letter, 1 camera), " + report::fixed(letter.summary.smallest_person_m, 3) +
+                    " m (letter, 2 cameras), " + report::fixed(search.summary.smallest_person_m, 3) +
                     " m (search); vertices reached " + std::to_string(comparison.runs[Method::none].vertices) + ", " +
                     std::to_string(comparison.runs[Method::letter_one].vertices) + ", " +
                     std::to_string(letter.vertices) + ", " + std::to_string(search.vertices) + ".");

@@ -11,6 +11,7 @@
 #include "lab/experiments/stage/point_truth.hpp"
 #include "lab/experiments/stage/rig_width.hpp"
 #include "lab/measure/clocks.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::experiments {
 
@@ -102,9 +103,9 @@ class Truths {
 void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth& truth, std::mt19937_64& engine) {
   CountedMethod& result = setup.result.methods[method];
   DistanceMethod& asked = setup.methods[method];
-  double start_s = processor_time_s();
+  double start_s = lab::processor_time_s();
   asked.update(setup.images.frames());
-  setup.updates_s[method].push_back(processor_time_s() - start_s);
+  setup.updates_s[method].push_back(lab::processor_time_s() - start_s);
 
   const auto points_world = stage.arm().points_world();
   std::vector<Proximity> answers(points_world.size());
@@ -124,9 +125,9 @@ void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth&
     for (std::size_t i = 0; i < moved_world.size(); ++i) {
       moved_world[i] = points_world[i] + Eigen::Vector3d(aside_m(engine), aside_m(engine), aside_m(engine));
     }
-    start_s = processor_time_s();
+    start_s = lab::processor_time_s();
     asked.evaluate(moved_world, answers);
-    setup.evaluations_s[method].push_back(processor_time_s() - start_s);
+    setup.evaluations_s[method].push_back(lab::processor_time_s() - start_s);
   }
 
   if (method != kCountedLetter && method != kCountedSearch) {
@@ -147,8 +148,8 @@ std::vector<CameraCount> medians_of(std::vector<Setup>& setups) {
   std::vector<CameraCount> counts;
   for (Setup& setup : setups) {
     for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
-      setup.result.methods[method].evaluation_s = quantile(std::move(setup.evaluations_s[method]), 0.5);
-      setup.result.methods[method].update_s = quantile(std::move(setup.updates_s[method]), 0.5);
+      setup.result.methods[method].evaluation_s = report::quantile(std::move(setup.evaluations_s[method]), 0.5);
+      setup.result.methods[method].update_s = report::quantile(std::move(setup.updates_s[method]), 0.5);
     }
     counts.push_back(std::move(setup.result));
   }

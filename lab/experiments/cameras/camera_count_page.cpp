@@ -3,15 +3,15 @@
 
 #include "lab/experiments/cameras/camera_count.hpp"
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "report/markdown_table.hpp"
+#include "report/number_text.hpp"
 #include "report/plot.hpp"
 
 namespace depthgrid::experiments {
 
 namespace {
 
-std::string milliseconds(double seconds) { return fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
+std::string milliseconds(double seconds) { return report::fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
 
 double time_ratio(const std::vector<CameraCount>& counts, std::size_t method, std::size_t index) {
   return counts[index].methods[method].evaluation_s / counts[1].methods[method].evaluation_s;
@@ -65,7 +65,7 @@ std::string time_table(const std::vector<CameraCount>& counts) {
     std::vector<std::string> row{std::to_string(counts[i].cameras)};
     for (std::size_t method = 0; method < kCountedMethods; ++method) {
       row.push_back(milliseconds(counts[i].methods[method].evaluation_s));
-      row.push_back(fixed(time_ratio(counts, method, i), 2));
+      row.push_back(report::fixed(time_ratio(counts, method, i), 2));
     }
     table.row(row);
   }
@@ -89,7 +89,8 @@ std::string preparation_table(const std::vector<CameraCount>& counts) {
 }
 
 std::string pockets_text(const CountedMethod& method) {
-  return percent(static_cast<double>(method.pockets) / static_cast<double>(std::max<std::size_t>(1, method.far)));
+  return report::percent(static_cast<double>(method.pockets) /
+                         static_cast<double>(std::max<std::size_t>(1, method.far)));
 }
 
 std::string left_table(const std::vector<CameraCount>& counts) {
@@ -99,10 +100,10 @@ std::string left_table(const std::vector<CameraCount>& counts) {
   for (const CameraCount& count : counts) {
     const CountedMethod& search = count.methods[kCountedSearch];
     const CountedMethod& letter = count.methods[kCountedLetter];
-    table.row({std::to_string(count.cameras), percent(count.gray.share()), percent(count.gray.share_near()),
-               pockets_text(letter), pockets_text(search), percent(letter.deviation.false_obstacles()),
-               percent(search.deviation.false_obstacles()), percent(letter.deviation.overestimates()),
-               percent(search.deviation.overestimates())});
+    table.row({std::to_string(count.cameras), report::percent(count.gray.share()),
+               report::percent(count.gray.share_near()), pockets_text(letter), pockets_text(search),
+               report::percent(letter.deviation.false_obstacles()), report::percent(search.deviation.false_obstacles()),
+               report::percent(letter.deviation.overestimates()), report::percent(search.deviation.overestimates())});
   }
   return table.text();
 }
@@ -111,14 +112,14 @@ void report_growth(const std::vector<CameraCount>& counts, ExperimentReport& rep
   const std::size_t last = counts.size() - 1;
   std::string growth = "From two to eight cameras the time of an evaluation grows";
   for (const std::size_t method : {kCountedHybrid, kCountedCorrected, kCountedSearch}) {
-    growth += std::string(method == kCountedHybrid ? " " : ", ") + fixed(time_ratio(counts, method, last), 2) +
+    growth += std::string(method == kCountedHybrid ? " " : ", ") + report::fixed(time_ratio(counts, method, last), 2) +
               " times (" + counts[last].methods[method].label + ", a straight line explains " +
-              percent(linear_fit(counts, method).r_squared, 0) + " of its variance)";
+              report::percent(linear_fit(counts, method).r_squared, 0) + " of its variance)";
   }
   report.headline(growth + ".");
-  report.headline("Within 0.4 m of the arm the gray area falls from " + percent(counts[0].gray.share_near()) +
-                  " with one camera to " + percent(counts[1].gray.share_near()) + " with two and " +
-                  percent(counts[last].gray.share_near()) + " with eight.");
+  report.headline("Within 0.4 m of the arm the gray area falls from " + report::percent(counts[0].gray.share_near()) +
+                  " with one camera to " + report::percent(counts[1].gray.share_near()) + " with two and " +
+                  report::percent(counts[last].gray.share_near()) + " with eight.");
   std::string pockets;
   for (const CameraCount& count : counts) {
     pockets += (pockets.empty() ? "" : ", ") + pockets_text(count.methods[kCountedSearch]);

@@ -11,7 +11,7 @@ struct CampaignPlan {
   double duration_s = 10;  ///< of each
   AvoidanceSettings common;
   std::uint64_t seed = 1;
-  int threads = 1;
+  int threads = 0;  ///< 0: one a core
 };
 
 /// What must agree for runs to belong together.

@@ -1,6 +1,6 @@
 #include "lab/experiments/campaign/campaign_motions.hpp"
 
-#include <cstdlib>
+#include "lab/measure/recording_folder.hpp"
 
 namespace depthgrid::experiments {
 
@@ -14,10 +14,7 @@ constexpr std::string_view kRecorded = "mocap ";
 
 bool is_recorded(std::string_view name) noexcept { return name.starts_with(kRecorded); }
 
-fs::path mocap_folder() {
-  const char* data = std::getenv("DEPTHGRID_DATA");  // NOLINT(concurrency-mt-unsafe): nobody changes the environment
-  return fs::path(data != nullptr ? data : "../shared/data") / "mocap_cmu";
-}
+fs::path mocap_folder() { return lab::recording_folder("mocap_cmu"); }
 
 CampaignMotions::CampaignMotions(const Rig& rig, std::uint64_t seed, double duration_s, const fs::path& mocap)
     : rig_(rig), stage_(avoidance_stage(rig)), seed_(seed), duration_s_(duration_s) {

@@ -11,8 +11,8 @@
 #include "lab/experiments/campaign/campaign_totals.hpp"
 #include "lab/experiments/campaign/plate_scene.hpp"
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "report/markdown_table.hpp"
+#include "report/number_text.hpp"
 #include "report/plot.hpp"
 
 namespace depthgrid::experiments {
@@ -91,21 +91,23 @@ std::map<Method, double> alone_s_per_vertex(const CampaignPlan& plan) {
 
 void say_what_was_done(const CampaignPlan& plan, const CampaignState& state, ExperimentReport& report) {
   report.paragraph(
-      std::to_string(state.motions.size()) + " motions of " + fixed(plan.duration_s) +
+      std::to_string(state.motions.size()) + " motions of " + report::fixed(plan.duration_s) +
       " s around the time when the person is nearest, with every method: the arm goes round a hexagon (radius " +
-      fixed(kHexagonRadius_m, 1) + " m, 0.40 m/s) that stands in the plane between the letter's two cameras. Images: " +
+      report::fixed(kHexagonRadius_m, 1) +
+      " m, 0.40 m/s) that stands in the plane between the letter's two cameras. Images: " +
       std::to_string(plan.common.width_px) + " x " + std::to_string(3 * plan.common.width_px / 4) + ", " +
-      std::string(plan.common.sensor) + " sensor, " + fixed(kFrameRate_hz) + " Hz, " +
-      fixed(1000 * plan.common.frame_latency_s) + " ms late; commands every " + fixed(1000 * plan.common.period_s) +
-      " ms, distances every " + fixed(1000 * plan.common.period_s * plan.common.evaluate_every) +
+      std::string(plan.common.sensor) + " sensor, " + report::fixed(kFrameRate_hz) + " Hz, " +
+      report::fixed(1000 * plan.common.frame_latency_s) + " ms late; commands every " +
+      report::fixed(1000 * plan.common.period_s) + " ms, distances every " +
+      report::fixed(1000 * plan.common.period_s * plan.common.evaluate_every) +
       " ms. The person does not avoid the robot, and walks into it where its script leads. Truth: exact distances "
       "between bodies, every 2 ms. The letter asks nine points, repels the end effector by the mean (11) as printed "
       "and limits the body by the risk; the search asks the links' capsules, repels by the corrected direction and "
       "limits all of them by approach rows (gain " +
-      fixed(plan.common.approach_gain_per_s, 1) + " 1/s, stop " + fixed(plan.common.approach_stop_m, 2) +
-      " m), with v_max = " + fixed(plan.common.v_max_m_s, 1) +
+      report::fixed(plan.common.approach_gain_per_s, 1) + " 1/s, stop " +
+      report::fixed(plan.common.approach_stop_m, 2) + " m), with v_max = " + report::fixed(plan.common.v_max_m_s, 1) +
       " m/s. All that nobody sees is an obstacle to it; in the last row pockets of up to " +
-      fixed(plan.common.ignored_pocket_m, 2) + " m right behind the robot are not (declared).");
+      report::fixed(plan.common.ignored_pocket_m, 2) + " m right behind the robot are not (declared).");
   const bool recordings = state.settings.value("recordings", false);
   report.paragraph(recordings ? "One motion in six is a recorded one (CMU motion capture, subject 02)."
                               : "Scripted motions only: no recordings were found in " + mocap_folder().string() + ".");
@@ -144,9 +146,10 @@ void report_totals(const std::map<Method, MethodTotals>& sums, const std::map<Me
                                "with nobody there", "stopped", "stopped with nothing within 0.4 m"});
   for (const auto& [method, sum] : sums) {
     table.row({std::string(title(method)), std::to_string(sum.with_contact) + " of " + std::to_string(sum.motions),
-               causes_text(sum), fixed(sum.worst_robot_m_s, 2), fixed(sum.worst_during_m_s, 2),
-               fixed(sum.median_smallest_m, 3), fixed(sum.s_per_vertex, 3), fixed(alone.at(method), 3),
-               percent(sum.stopped_share), percent(sum.false_stop_share)});
+               causes_text(sum), report::fixed(sum.worst_robot_m_s, 2), report::fixed(sum.worst_during_m_s, 2),
+               report::fixed(sum.median_smallest_m, 3), report::fixed(sum.s_per_vertex, 3),
+               report::fixed(alone.at(method), 3), report::percent(sum.stopped_share),
+               report::percent(sum.false_stop_share)});
     report.figures()[std::string(key(method))] = figures_of_totals(method, sum, alone.at(method));
   }
   report.paragraph(table.text());
@@ -158,7 +161,7 @@ void report_totals(const std::map<Method, MethodTotals>& sums, const std::map<Me
 }
 
 std::string time_text(const std::string& name, const TimeBesideLetter& time) {
-  return name + " " + fixed(time.ratio, 2) + ", above in " + std::to_string(time.above_wanted) + " of " +
+  return name + " " + report::fixed(time.ratio, 2) + ", above in " + std::to_string(time.above_wanted) + " of " +
          std::to_string(time.motions) + " motions, less than one vertex in " + std::to_string(time.below_one_vertex) +
          " (letter: " + std::to_string(time.letter_below_vertex) + ")";
 }
@@ -181,7 +184,7 @@ void report_time(const CampaignState& state, Method method, ExperimentReport& re
     text += (text.empty() ? "" : "; ") + time_text(name, time);
   }
   report.headline(std::string(title(method)) + ": task time beside the letter with two cameras (wanted: at most " +
-                  fixed(kSlowest, 1) + "): " + text + ".");
+                  report::fixed(kSlowest, 1) + "): " + text + ".");
 }
 
 void report_contacts_caused(const CampaignState& state, Method method, const MethodTotals& sum,
@@ -197,7 +200,7 @@ void report_contacts_caused(const CampaignState& state, Method method, const Met
                   "person than it was in " +
                   std::to_string(sum.over_estimates) + " of " + std::to_string(sum.compared) +
                   " periods with the person within 0.4 m, by " +
-                  fixed(1000 * std::max(0.0, sum.largest_over_estimate_m)) + " mm at most.");
+                  report::fixed(1000 * std::max(0.0, sum.largest_over_estimate_m)) + " mm at most.");
 }
 
 void report_plate(const CampaignPlan& plan, ExperimentReport& report) {
@@ -210,7 +213,9 @@ void report_plate(const CampaignPlan& plan, ExperimentReport& report) {
         {"smallest_distance_m", scenes[method].smallest_m},
         {"contacts", scenes[method].contacts}};
   }
-  const auto towards = [&](Method method) { return fixed(scenes[method].fastest_towards_nearest_m_s, 2) + " m/s"; };
+  const auto towards = [&](Method method) {
+    return report::fixed(scenes[method].fastest_towards_nearest_m_s, 2) + " m/s";
+  };
   report.headline(
       "Hand against plate: the repulsion points towards what the method itself holds for nearest at up to " +
       towards(Method::letter_one) + " (letter, 1 camera), " + towards(Method::letter_two) + " (letter, 2 cameras), " +
@@ -233,8 +238,8 @@ void report_campaign(const CampaignPlan& plan, const CampaignState& state, Exper
   }
   report_totals(sums, alone, report);
   report.figures()["claims"]["slowest_with_nobody_beside_no_avoidance"] = slowest_alone;
-  report.headline("Task time with nobody there, slowest method beside no avoidance: " + fixed(slowest_alone, 3) +
-                  " (wanted: at most " + fixed(kSameTime, 2) + ").");
+  report.headline("Task time with nobody there, slowest method beside no avoidance: " +
+                  report::fixed(slowest_alone, 3) + " (wanted: at most " + report::fixed(kSameTime, 2) + ").");
   for (const Method method : {Method::search, Method::search_pockets}) {
     report_contacts_caused(state, method, sums.at(method), report);
     report_time(state, method, report);

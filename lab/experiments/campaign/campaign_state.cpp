@@ -1,13 +1,11 @@
 #include "lab/experiments/campaign/campaign_state.hpp"
 
-#include <cmath>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
-#include "lab/experiments/text_output.hpp"
+#include "lab/measure/json_file.hpp"
 
 namespace depthgrid::experiments {
 
@@ -15,9 +13,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 namespace {
-
-/// JSON knows no infinity.
-ordered_json finite(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
 
 double number(const ordered_json& value) {
   return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
@@ -77,7 +72,7 @@ void each_number(Summary& run, Visit visit) {
 }
 
 ordered_json to_json(const RunSummary& run) {
-  ordered_json json{{"task_share", run.task_share}, {"smallest_person_m", finite(run.smallest_person_m)}};
+  ordered_json json{{"task_share", run.task_share}, {"smallest_person_m", lab::finite(run.smallest_person_m)}};
   each_number(run, [&](const char* key, const auto& value) { json[key] = value; });
   json["contacts"] = ordered_json::array();
   for (const Contact& contact : run.contacts) {
@@ -127,7 +122,7 @@ void write_campaign_state(const fs::path& file, const CampaignState& state) {
     }
     json["motions"].push_back(std::move(entry));
   }
-  write_text(file, json.dump(1) + "\n");
+  lab::write_json_file(file, json);
 }
 
 CampaignState read_campaign_state(const fs::path& file, const ordered_json& settings) {
@@ -140,11 +135,8 @@ CampaignState read_campaign_state(const fs::path& file, const ordered_json& sett
   if (!fs::is_regular_file(file, error)) {
     fail(file.string(), ": is no file; remove it, or give another --out");
   }
-  std::ifstream in(file);
-  const ordered_json json = ordered_json::parse(in, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || !json.contains("campaign") || !json.contains("motions")) {
-    fail(file.string(), ": is no state of a campaign; remove it, or give another --out");
-  }
+  const ordered_json json =
+      lab::read_json_file(file, "state of a campaign; remove it, or give another --out", {"campaign", "motions"});
   if (json["campaign"] != settings) {
     fail(file.string(), ": belongs to another campaign, with ", differences(json["campaign"], settings),
          "; give another --out");

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "lab/experiments/stage/comparison_picture.hpp"
 #include "lab/experiments/stage/rig_width.hpp"
 #include "lab/experiments/stage/two_views.hpp"
+#include "report/number_text.hpp"
 
 namespace depthgrid::experiments {
 
@@ -109,11 +109,11 @@ void run_hidden_hand(const Options& options, ExperimentReport& report) {
   const GroupedDeviations figures = measure_hidden_hand(options, &report);
   const auto too_far = [&](std::size_t candidate) {
     const Deviation& deviation = figures.chosen[candidate].deviation;
-    return percent(deviation.overestimates()) + " of the answers (" + fixed(1000 * deviation.largest_overestimate_m()) +
-           " mm at most)";
+    return report::percent(deviation.overestimates()) + " of the answers (" +
+           report::fixed(1000 * deviation.largest_overestimate_m()) + " mm at most)";
   };
   report.headline(
-      "The hand comes as near as " + fixed(figures.person_to_arm_m, 2) +
+      "The hand comes as near as " + report::fixed(figures.person_to_arm_m, 2) +
       " m to the arm. While it is near and the robot's pixels are taken for background, the letter's method is more "
       "than 10 mm too far in " +
       too_far(kHandLetterBlind) + " with camera 1 alone, in " + too_far(kHandLetterTwoBlind) +
@@ -124,10 +124,11 @@ void run_hidden_hand(const Options& options, ExperimentReport& report) {
   report.headline(
       "With one camera and the space behind the robot unknown, the search has a false obstacle (more than "
       "100 mm too near) at " +
-      percent(figures.otherwise[kHandSearchOne].deviation.false_obstacles()) +
+      report::percent(figures.otherwise[kHandSearchOne].deviation.false_obstacles()) +
       " of the points while nobody is near, with two cameras at " +
-      percent(figures.otherwise[kHandSearchTwo].deviation.false_obstacles()) + ".");
-  report_groups(figures, "While the person is nearer than " + fixed(kHandNear, 2) + " m to the arm:", "hand_near",
+      report::percent(figures.otherwise[kHandSearchTwo].deviation.false_obstacles()) + ".");
+  report_groups(figures,
+                "While the person is nearer than " + report::fixed(kHandNear, 2) + " m to the arm:", "hand_near",
                 report);
   report.paragraph(
       "*robot = background*: pixels of the robot are replaced by the empty room in all images, as if nothing could "

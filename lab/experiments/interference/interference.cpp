@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "lab/experiments/stage/comparison_picture.hpp"
 #include "lab/experiments/stage/instant_groups.hpp"
 #include "lab/experiments/stage/method_comparison.hpp"
 #include "lab/experiments/stage/rig_width.hpp"
 #include "report/markdown_table.hpp"
+#include "report/number_text.hpp"
 
 namespace depthgrid::experiments {
 
@@ -118,8 +118,8 @@ report::Canvas draw(const std::vector<CaseRun>& runs, const RigCamera& camera) {
   search.series.push_back(letter.series.front());
   for (std::size_t s = 0; s < runs.size(); ++s) {
     const InterferenceCase& figures = runs[s].figures;
-    tiles.push_back({std::string(kSettings[s].title) + ": " + percent(figures.invalid_share[0]) + " invalid", &camera,
-                     &runs[s].shown, nullptr, nullptr});
+    tiles.push_back({std::string(kSettings[s].title) + ": " + report::percent(figures.invalid_share[0]) + " invalid",
+                     &camera, &runs[s].shown, nullptr, nullptr});
     letter.series.push_back(median_answers(runs[s].instants, kLetter, figures.label));
     search.series.push_back(median_answers(runs[s].instants, kSearchCandidate, figures.label));
   }
@@ -162,16 +162,17 @@ void run_interference(const Options& options, ExperimentReport& report) {
       "of 5 pixels, 0.28 % when one of the two vibrates (after Maimone and Fuchs, VR 2012). Cameras that face each "
       "other light few surfaces in common and would show little of it.");
   const std::vector<InterferenceCase> cases = measure_interference(options, &report);
-  report.headline("Without measurement in the first camera's images: " + percent(cases[0].invalid_share[0]) +
-                  " of the pixels alone, " + percent(cases[1].invalid_share[0]) + " with a second Kinect beside it, " +
-                  percent(cases[2].invalid_share[0]) + " when that one vibrates (the model's assumption).");
+  report.headline("Without measurement in the first camera's images: " + report::percent(cases[0].invalid_share[0]) +
+                  " of the pixels alone, " + report::percent(cases[1].invalid_share[0]) +
+                  " with a second Kinect beside it, " + report::percent(cases[2].invalid_share[0]) +
+                  " when that one vibrates (the model's assumption).");
   const auto medians = [&](std::size_t method) {
     std::string text;
     for (std::size_t c = 0; c < cases.size(); ++c) {
       text += (c == 0   ? ""
                : c == 1 ? ", "
                         : " and ") +
-              fixed(1000 * cases[c].methods[method].deviation.shortfall_m(0.5));
+              report::fixed(1000 * cases[c].methods[method].deviation.shortfall_m(0.5));
     }
     return text + " mm";
   };
@@ -181,8 +182,9 @@ void run_interference(const Options& options, ExperimentReport& report) {
                                "free nothing with the lateral margin, camera 1", "camera 2",
                                "nearest for the search: an unmeasured pixel's ray"});
   for (const InterferenceCase& c : cases) {
-    table.row({c.label, percent(c.invalid_share[0]), percent(c.invalid_share[1]), percent(c.blocked_share[0]),
-               percent(c.blocked_share[1]), percent(c.unmeasured_share)});
+    table.row({c.label, report::percent(c.invalid_share[0]), report::percent(c.invalid_share[1]),
+               report::percent(c.blocked_share[0]), report::percent(c.blocked_share[1]),
+               report::percent(c.unmeasured_share)});
     auto& json = report.figures()[c.label];
     json["invalid_share"] = c.invalid_share;
     json["free_nothing_share"] = c.blocked_share;

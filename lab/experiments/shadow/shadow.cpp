@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "lab/experiments/stage/comparison_picture.hpp"
 #include "lab/experiments/stage/rig_width.hpp"
 #include "lab/experiments/stage/two_views.hpp"
+#include "report/number_text.hpp"
 
 namespace depthgrid::experiments {
 
@@ -139,9 +139,9 @@ void run_shadow(const Options& options, ExperimentReport& report) {
       "axis up to 0.4 m, beside the real ones.");
   const GroupedDeviations figures = measure_shadow(options, &report);
   const auto false_share = [&](std::size_t candidate) {
-    return percent(figures.chosen[candidate].deviation.false_obstacles());
+    return report::percent(figures.chosen[candidate].deviation.false_obstacles());
   };
-  report.headline("The person is never nearer to the arm than " + fixed(figures.person_to_arm_m, 2) +
+  report.headline("The person is never nearer to the arm than " + report::fixed(figures.person_to_arm_m, 2) +
                   " m. While a part of the arm is hidden from camera 1, the letter's method has a false obstacle (an "
                   "answer more than 100 mm too near) at " +
                   false_share(kShadowLetterOne) + " of the points with this camera alone and at " +

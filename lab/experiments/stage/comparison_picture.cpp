@@ -7,6 +7,7 @@
 #include "lab/experiments/stage/deviation.hpp"
 #include "report/answers_picture.hpp"
 #include "report/depth_picture.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::experiments {
 
@@ -106,7 +107,7 @@ report::Series median_answers(const std::vector<Instant>& instants, std::size_t 
       }
     }
     series.x.push_back(instant.time_s);
-    series.y.push_back(quantile(std::move(distances_m), 0.5));
+    series.y.push_back(report::quantile(std::move(distances_m), 0.5));
   }
   return series;
 }
@@ -119,7 +120,7 @@ report::Series median_truth(const std::vector<Instant>& instants, double rho_m) 
       distances_m.push_back(std::min(truth.distance_m, rho_m));
     }
     series.x.push_back(instant.time_s);
-    series.y.push_back(quantile(std::move(distances_m), 0.5));
+    series.y.push_back(report::quantile(std::move(distances_m), 0.5));
   }
   return series;
 }

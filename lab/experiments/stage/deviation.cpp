@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "report/statistics.hpp"
+
 namespace depthgrid::experiments {
 
 void Deviation::leave_out() { ++not_compared_; }
@@ -36,7 +38,7 @@ double Deviation::largest_overestimate_m() const {
                           : std::max(0.0, -*std::min_element(short_m_.begin(), short_m_.end()));
 }
 
-double Deviation::shortfall_m(double q) const { return quantile(short_m_, q); }
+double Deviation::shortfall_m(double q) const { return report::quantile(short_m_, q); }
 
 nlohmann::ordered_json Deviation::json() const {
   nlohmann::ordered_json json;
@@ -48,16 +50,6 @@ nlohmann::ordered_json Deviation::json() const {
   json["overestimate_share"] = overestimates();
   json["overestimate_largest_m"] = largest_overestimate_m();
   return json;
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const long index = std::lround(std::clamp(q, 0.0, 1.0) * static_cast<double>(values.size() - 1));
-  const auto at = values.begin() + index;
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 }  // namespace depthgrid::experiments

@@ -142,9 +142,9 @@ FreeRun run_free(const LoopRecording& recording, Method method, LoopParts parts,
       all.arm.set_period(period + later);
       const double at_s = now_s + recording.period_s() * static_cast<double>(later);
       const auto begin = Clock::now();
-      const double begin_s = processor_time_s();
+      const double begin_s = lab::processor_time_s();
       const bool done = all.loop.cycle(all.arm, at_s);
-      result.cycle_s.push_back(processor_time_s() - begin_s);
+      result.cycle_s.push_back(lab::processor_time_s() - begin_s);
       result.wall_s += seconds(Clock::now() - begin);
       result.evaluate_s += all.timed.evaluate_s();
       if (!done) {
@@ -179,10 +179,10 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
       std::this_thread::sleep_until(time_of(k));
       PeriodTimes& times = result.periods[static_cast<std::size_t>(k)];
       const auto start = Clock::now();
-      const double processor_s = processor_time_s();
+      const double processor_s = lab::processor_time_s();
       all.arm.set_period(k);
       const bool done = all.loop.cycle(all.arm, static_cast<double>(k) * recording.period_s());
-      times.processor_s = processor_time_s() - processor_s;
+      times.processor_s = lab::processor_time_s() - processor_s;
       times.took_s = seconds(Clock::now() - start);
       times.late_s = seconds(start - time_of(k));
       times.evaluate_s = all.timed.evaluate_s();

@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
 #include "lab/experiments/stage/deviation.hpp"
 #include "lab/experiments/timing/late_cycles.hpp"
 #include "report/markdown_table.hpp"
+#include "report/number_text.hpp"
 #include "report/plot.hpp"
+#include "report/statistics.hpp"
 
 namespace depthgrid::experiments {
 
@@ -56,20 +57,20 @@ ordered_json free_figures(const FreeRun& run) {
   return {{"cycles", run.cycle_s.size()},
           {"cycles_a_second", 1 / mean_s},
           {"cycles_a_second_by_the_wall", static_cast<double>(run.cycle_s.size()) / run.wall_s},
-          {"median_ms", 1e3 * quantile(run.cycle_s, 0.5)},
-          {"p999_ms", 1e3 * quantile(run.cycle_s, 0.999)},
-          {"most_ms", 1e3 * quantile(run.cycle_s, 1)},
+          {"median_ms", 1e3 * report::quantile(run.cycle_s, 0.5)},
+          {"p999_ms", 1e3 * report::quantile(run.cycle_s, 0.999)},
+          {"most_ms", 1e3 * report::quantile(run.cycle_s, 1)},
           {"distances_share", run.evaluate_s / run.wall_s}};
 }
 
 std::vector<std::string> free_row(const std::string& name, const ordered_json& figures) {
   return {name,
-          fixed(figures["cycles_a_second"], 0),
-          fixed(figures["cycles_a_second_by_the_wall"], 0),
-          fixed(figures["median_ms"], 3),
-          fixed(figures["p999_ms"], 3),
-          fixed(figures["most_ms"], 3),
-          percent(figures["distances_share"])};
+          report::fixed(figures["cycles_a_second"], 0),
+          report::fixed(figures["cycles_a_second_by_the_wall"], 0),
+          report::fixed(figures["median_ms"], 3),
+          report::fixed(figures["p999_ms"], 3),
+          report::fixed(figures["most_ms"], 3),
+          report::percent(figures["distances_share"])};
 }
 
 struct PacedFigures {
@@ -91,9 +92,9 @@ std::string worst_cycle(const PacedRun& run) {
   const auto worst = std::max_element(run.periods.begin(), run.periods.end(), [](const auto& a, const auto& b) {
     return a.late_s + a.took_s < b.late_s + b.took_s;
   });
-  return "begun " + fixed(1e3 * worst->late_s, 2) + " ms late, " + fixed(1e3 * worst->took_s, 2) +
-         " ms long, of that " + fixed(1e3 * worst->evaluate_s, 2) + " ms distances; " +
-         fixed(1e3 * worst->processor_s, 2) + " ms of processor time" +
+  return "begun " + report::fixed(1e3 * worst->late_s, 2) + " ms late, " + report::fixed(1e3 * worst->took_s, 2) +
+         " ms long, of that " + report::fixed(1e3 * worst->evaluate_s, 2) + " ms distances; " +
+         report::fixed(1e3 * worst->processor_s, 2) + " ms of processor time" +
          (worst->frame_arriving ? ", while a frame was taken" : "");
 }
 
@@ -125,32 +126,34 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
       static_cast<double>(cycles);
   const double stopped =
       run.answered > 0 ? static_cast<double>(run.stopped_by_budget) / static_cast<double>(run.answered) : 0;
-  report.headline(name + ": " + percent(share, 3) + " of " + std::to_string(cycles) +
+  report.headline(name + ": " + report::percent(share, 3) + " of " + std::to_string(cycles) +
                   " cycles had their command within 2 ms of the period's beginning while frames arrived (wanted: 99.9 "
                   "%); " +
-                  percent(own_share, 3) +
-                  " took no more than 2 ms of processor time. Longest: " + fixed(1e3 * quantile(figures.end_s, 1), 2) +
+                  report::percent(own_share, 3) + " took no more than 2 ms of processor time. Longest: " +
+                  report::fixed(1e3 * report::quantile(figures.end_s, 1), 2) +
                   " ms after the beginning; largest processor time of any cycle: " +
-                  fixed(1e3 * quantile(figures.processor_s, 1), 2) + " ms. " + std::to_string(run.failed_cycles) +
-                  " cycles and " + std::to_string(run.failed_frames) + " pairs of images failed.");
+                  report::fixed(1e3 * report::quantile(figures.processor_s, 1), 2) + " ms. " +
+                  std::to_string(run.failed_cycles) + " cycles and " + std::to_string(run.failed_frames) +
+                  " pairs of images failed.");
   report.paragraph(
       "Of the " + std::to_string(cycles - late.in_time) + " late ones " + std::to_string(late.after_overrun) +
       " came after one that lasted until more than half of their period had gone, " + std::to_string(late.woken_late) +
       " others were woken more than 1 ms late, " + std::to_string(late.interrupted) +
       " others did not have the processor all the time, " + std::to_string(late.computed) +
-      " computed for 2 ms or longer. The worst cycle: " + worst_cycle(run) +
-      ". Budget of the distances: " + fixed(1e3 * budget.time_s, 2) + " ms a cycle; it ended " + percent(stopped, 3) +
-      " of the answers. A pair of images took " + fixed(1e3 * quantile(run.frame_s, 0.5), 2) + " ms (median) and " +
-      fixed(1e3 * quantile(run.frame_s, 1), 2) + " ms (most) on the other thread, robot removal included. " +
+      " computed for 2 ms or longer. The worst cycle: " + worst_cycle(run) + ". Budget of the distances: " +
+      report::fixed(1e3 * budget.time_s, 2) + " ms a cycle; it ended " + report::percent(stopped, 3) +
+      " of the answers. A pair of images took " + report::fixed(1e3 * report::quantile(run.frame_s, 0.5), 2) +
+      " ms (median) and " + report::fixed(1e3 * report::quantile(run.frame_s, 1), 2) +
+      " ms (most) on the other thread, robot removal included. " +
       (run.real_time_priority ? "The loop's thread had real-time priority."
                               : "The loop's thread had no real-time priority."));
   entry = {{"cycles", cycles},
            {"share_within_2_ms", share},
            {"share_within_2_ms_of_processor_time", own_share},
-           {"median_ms", 1e3 * quantile(figures.took_s, 0.5)},
-           {"p999_ms", 1e3 * quantile(figures.took_s, 0.999)},
-           {"most_ms_after_beginning", 1e3 * quantile(figures.end_s, 1)},
-           {"most_ms_of_processor_time", 1e3 * quantile(figures.processor_s, 1)},
+           {"median_ms", 1e3 * report::quantile(figures.took_s, 0.5)},
+           {"p999_ms", 1e3 * report::quantile(figures.took_s, 0.999)},
+           {"most_ms_after_beginning", 1e3 * report::quantile(figures.end_s, 1)},
+           {"most_ms_of_processor_time", 1e3 * report::quantile(figures.processor_s, 1)},
            {"late",
             {{"after_overrun", late.after_overrun},
              {"woken_late", late.woken_late},
@@ -161,8 +164,8 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
            {"worst_cycle", worst_cycle(run)},
            {"budget_ms", 1e3 * budget.time_s},
            {"answers_ended_by_budget", stopped},
-           {"frame_pair_median_ms", 1e3 * quantile(run.frame_s, 0.5)},
-           {"frame_pair_most_ms", 1e3 * quantile(run.frame_s, 1)},
+           {"frame_pair_median_ms", 1e3 * report::quantile(run.frame_s, 0.5)},
+           {"frame_pair_most_ms", 1e3 * report::quantile(run.frame_s, 1)},
            {"real_time_priority", run.real_time_priority}};
   draw_cycles(name, figures, report);
 }
@@ -194,10 +197,10 @@ void report_free(const LoopRecording& recording, const AvoidanceSettings& settin
       std::max(1, cycles / 16));
   const double rate = figures["free"]["search_nine_points"]["cycles_a_second"];
   const double letter_rate = figures["free"]["letter_two"]["cycles_a_second"];
-  report.headline("Without frames arriving one core does " + fixed(rate, 0) +
+  report.headline("Without frames arriving one core does " + report::fixed(rate, 0) +
                   " cycles of the whole loop a second with nine points (wanted: 3,000; by processor time, mean over " +
-                  std::to_string(snapshots) + " instants), " + fixed(rate / letter_rate, 1) +
-                  " times the same loop on the letter's evaluation, and " + fixed(rate * kLetter_s, 1) +
+                  std::to_string(snapshots) + " instants), " + report::fixed(rate / letter_rate, 1) +
+                  " times the same loop on the letter's evaluation, and " + report::fixed(rate * kLetter_s, 1) +
                   " times the 300 a second that the letter states for its machine.");
   report.paragraph(table.text());
   figures["free"]["search_beside_letter"] = rate / letter_rate;
@@ -217,12 +220,12 @@ void run_timing(const Options& options, ExperimentReport& report) {
   const LoopRecording recording(settings, recorded_s, options.seed);
   options.progress(1, steps);
   report.paragraph(
-      "A recording of the loop in simulated time (" + fixed(recorded_s, 1) + " s, " +
+      "A recording of the loop in simulated time (" + report::fixed(recorded_s, 1) + " s, " +
       std::to_string(recording.frames()) + " pairs of " + std::to_string(settings.width_px) + " x " +
       std::to_string(3 * settings.width_px / 4) + " images, 16 bits, ideal sensor, person: " + recording.motion() +
       ") is played there and back: the arm stands where it stood, images come at 30 Hz, and robot removal, search "
       "(resolution 5 mm, rho " +
-      fixed(search_settings(recording.rig(), settings).rho_m, 2) +
+      report::fixed(search_settings(recording.rig(), settings).rho_m, 2) +
       " m), kinematics and controller run as they would on the robot. Only the commands go nowhere.");
 
   report_free(recording, settings, options.quick, report);

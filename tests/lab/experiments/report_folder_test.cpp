@@ -5,7 +5,7 @@
 #include "depthgrid/core/error.hpp"
 #include "files/temporary_folder.hpp"
 #include "lab/experiments/experiment_report.hpp"
-#include "lab/experiments/number_text.hpp"
+#include "report/number_text.hpp"
 #include "support/thrown_message.hpp"
 
 namespace depthgrid::experiments {
@@ -30,7 +30,7 @@ TEST(ExperimentReport, HoldsFiguresPicturesAndWhatWasRun) {
   Options options;
   options.out = folder / "report";
   options.seed = 7;
-  options.command_line = "depthgrid experiment small --seed 7";
+  options.command_line = "depthgrid-lab experiment small --seed 7";
   const std::string text = run_experiment({"small", "a small one", small_run}, options);
   EXPECT_THAT(text, HasSubstr("It is 3 mm.\n"));
   EXPECT_THAT(text, HasSubstr("report.md"));
@@ -73,8 +73,8 @@ TEST(ExperimentReport, WrongFoldersAreRefusedBeforeTheRun) {
 }
 
 TEST(NumberText, SharesInPercentAndNothingForNaN) {
-  EXPECT_EQ(percent(0.1234), "12.3 %");
-  EXPECT_EQ(fixed(std::numeric_limits<double>::quiet_NaN(), 1), "-");
+  EXPECT_EQ(report::percent(0.1234), "12.3 %");
+  EXPECT_EQ(report::fixed(std::numeric_limits<double>::quiet_NaN(), 1), "-");
 }
 
 }  // namespace
