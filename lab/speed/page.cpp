@@ -57,9 +57,9 @@ void write_peers(std::ostream& page, const Report& report) {
     const Record* row = report.find("side by side, W", name, {{"cameras", 2}});
     if (row != nullptr) {
       const Record& r = *row;
-      table.row({name, milliseconds(r["cycle_median_s"]), report::three_digits(r["cycle_median_s"] / r["our_cycle_median_s"]),
-                 milliseconds(r["nine_median_s"]), r["counts_occluded"] != 0 ? "yes" : "no",
-                 millimetres(r["over_max_m"])});
+      table.row({name, milliseconds(r["cycle_median_s"]),
+                 report::three_digits(r["cycle_median_s"] / r["our_cycle_median_s"]), milliseconds(r["nine_median_s"]),
+                 r["counts_occluded"] != 0 ? "yes" : "no", millimetres(r["over_max_m"])});
     }
   }
   page << table.text() << "\n\n";
@@ -110,7 +110,7 @@ void write_page(const std::string& file, const std::string& images, const Report
   const fs::path plots(images);
   files::write_text_file(file, summary(images, report));
   files::write_text_file(folder / "benchmark-search.md",
-        details(plots.is_absolute() ? images : plots.lexically_relative("docs").string(), report));
+                         details(plots.is_absolute() ? images : plots.lexically_relative("docs").string(), report));
 }
 
 }  // namespace depthgrid::lab
