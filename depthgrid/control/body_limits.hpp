@@ -1,16 +1,16 @@
 // Control points and link capsules of the body as limits of joint velocities, through J^T n.
 //
 // n: unit vector from the body's point to the obstacle, J: Jacobian of that point. s_i = (J^T n)_i is exactly the speed
-// of approach that each rad/s of joint i causes. Two laws, with f the risk and V_i the velocity limit of joint i:
+// of approach that each rad/s of joint i causes. Three laws, with f the risk, V_i the velocity limit of joint i, and
+// v_allowed(D) = gain max(0, D - stop):
 //
-//   risk            s_i > 0: upper_i = V_i (1 - f(D)),   s_i < 0: lower_i = -V_i (1 - f(D))      after Flacco et al.,
-//   2012 approach_speed  the same with a factor k instead of 1 - f, so that sum_i |s_i| V_i k <= v_allowed(D): whatever
-//   motion
-//                   within the limits follows, the point approaches by no more than v_allowed(D) = gain max(0, D -
-//                   stop)
-//
+// clang-format off
+//   risk            s_i > 0: upper_i = V_i (1 - f(D)),  s_i < 0: lower_i = -V_i (1 - f(D));  after Flacco et al., 2012
+//   approach_speed  the same with a factor k instead of 1 - f, so that sum_i |s_i| V_i k <= v_allowed(D): whatever
+//                   motion within the limits follows, the point approaches by no more than v_allowed(D)
 //   approach_row    n . J qd <= v_allowed(D) itself, for the optimal saturation: joints may trade approach against
-//   retreat
+//                   retreat
+// clang-format on
 //
 // The most restrictive limit of all points holds. Where the direction is unknown the limits hold for both signs of
 // every joint that moves the point (approach_row: those of approach_speed).

@@ -1,5 +1,6 @@
 // The head of a map file: what the map is, what it was made for and how large its tables are.
 //
+// clang-format off
 //   offset  bytes
 //        0      8  "DGRIDMAP"
 //        8      4  0x01020304 as the writing machine stores it
@@ -11,8 +12,8 @@
 //       40      8  bytes of the tables
 //       48      8  cells in the tables
 //       56      8  row spans in the tables; 0 with one pixel a cell
-//       64      -  the calibration numbers, eight bytes each, in the order of numbers(); zeros up to the end of the
-//       head
+//       64      -  the calibration numbers, eight bytes each, in the order of numbers(); zeros up to the end of the head
+// clang-format on
 //
 // The tables follow, then eight bytes: "DGRM" and the CRC-32 of everything before them.
 #pragma once
