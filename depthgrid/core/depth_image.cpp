@@ -93,6 +93,11 @@ DepthView depth_view(std::span<const float> pixels_m, int width_px, int height_p
   return {pixels_m.data(), DepthFormat::float32_metres, width_px, height_px, stride_bytes, 1.0};
 }
 
+DepthView depth_view(const DepthImage& image_m) {
+  const std::size_t pixels = image_m.index(0, image_m.height_px());
+  return depth_view(std::span(image_m.data(), pixels), image_m.width_px(), image_m.height_px());
+}
+
 void validate(const MeasurementRule& rule, const char* name) {
   if (!(std::isfinite(rule.near_m) && rule.near_m >= 0)) {
     fail(name, ": near is ", rule.near_m, " m, must be a finite number that is not negative");

@@ -79,6 +79,9 @@ class DepthImage {
   AlignedVector<float> depth_m_;
 };
 
+/// The image as a camera's, metres. Throws Error when it is empty.
+DepthView depth_view(const DepthImage& image_m);
+
 /// Writes the measured depths of `view` into `image` (0 = no measurement). Sizes must be equal. Does not allocate.
 void normalise(const DepthView& view, const MeasurementRule& rule, DepthImage& image) noexcept;
 

@@ -63,9 +63,7 @@ void CameraImages::take(const StagedCell& stage, std::uint64_t frame) {
   }
   sensors_.measure(ideal_m_, frame, measured_m_);
   for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
-    const DepthImage& image = measured_m_[k];
-    frames_[k].depth =
-        depth_view(std::span(image.data(), image.index(0, image.height_px())), image.width_px(), image.height_px());
+    frames_[k].depth = depth_view(measured_m_[k]);
     if (robot_ == RobotPixels::behind_unknown) {
       frames_[k].robot =
           removals_[k].find(stage.arm().T_world_link(), rig_.cameras[k].T_world_camera, {}, &frames_[k].depth);
