@@ -1,5 +1,5 @@
-// A task of your own. AvoidanceLoop moves the tip along a polygon and nothing else; for any other task make the period
-// yourself from the same parts. Here the tip follows a circle and keeps its orientation: a task of six rows.
+// A task of your own: a class that says in every period how the tip shall move. Here the tip follows a circle and keeps
+// its orientation: a task of six rows.
 //
 //   find_package(depthgrid 0.1 REQUIRED COMPONENTS avoidance)
 //   target_link_libraries(own_task PRIVATE depthgrid::avoidance)
@@ -10,141 +10,83 @@
 #include <cstdio>
 #include <exception>
 #include <numbers>
-#include <span>
-#include <vector>
 
-#include "depthgrid/avoidance/distance_source.hpp"
-#include "depthgrid/control/controller.hpp"
+#include "depthgrid/avoidance/avoidance_loop.hpp"
+#include "depthgrid/avoidance/model_limits.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
-#include "depthgrid/robot/joint_history.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
-#include "depthgrid/robot/robot_parts.hpp"
 
-namespace avoidance = depthgrid::avoidance;
-namespace control = depthgrid::control;
-namespace robot = depthgrid::robot;
-using depthgrid::Pose;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
+using namespace depthgrid;
+using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kPeriod_s = 0.002;
+// A circle in the plane y = const through the start, which is its highest point.
+class Circle final : public control::MotionTask {
+ public:
+  explicit Circle(Pose T_world_start) : T_world_start_(std::move(T_world_start)) {}
 
-// Where the tip shall be at a time, and how fast it goes there.
-struct Circle {
-  Pose T_world_start;
-  double radius_m = 0.1;
-  double rad_s = 2.0;
+  // The repulsion is added to the first three rows: these have to be the velocity of the tip's origin. The tip goes
+  // along with the circle and, where it has been driven away, returns to it no faster than 0.2 m/s; the orientation
+  // likewise.
+  control::Task rows(const control::EndEffector& tip) noexcept override {
+    const double angle = kSpeed_rad_s * tip.time_s;
+    const Vector3d along = kRadius_m * kSpeed_rad_s * Vector3d(std::cos(angle), 0, -std::sin(angle));
+    const Vector3d back = 5.0 * away(tip.T_world_tip, tip.time_s);
+    const Vector3d turn = 5.0 * turned(tip.T_world_tip);
+    control::TaskVector velocity(6);
+    velocity << along + back / std::max(1.0, back.norm() / 0.2), turn / std::max(1.0, turn.norm());
+    return {tip.jacobian, velocity};
+  }
 
-  // In the plane y = const through the start, which is its highest point.
-  Eigen::Vector3d place(double time_s) const {
-    const double angle = rad_s * time_s;
-    return T_world_start.translation() + radius_m * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle) - 1);
+  // From the tip to its place on the circle.
+  Vector3d away(const Pose& T_world_tip, double time_s) const {
+    const double angle = kSpeed_rad_s * time_s;
+    const Vector3d place = T_world_start_.translation() + kRadius_m * Vector3d(std::sin(angle), 0, std::cos(angle) - 1);
+    return place - T_world_tip.translation();
   }
-  Eigen::Vector3d velocity(double time_s) const {
-    const double angle = rad_s * time_s;
-    return radius_m * rad_s * Eigen::Vector3d(std::cos(angle), 0, -std::sin(angle));
+
+  // The rotation vector that turns the tip to how it stood at the start, world frame.
+  Vector3d turned(const Pose& T_world_tip) const {
+    const Eigen::AngleAxisd turn(T_world_start_.linear() * T_world_tip.linear().transpose());
+    return turn.angle() * turn.axis();
   }
+
+ private:
+  static constexpr double kRadius_m = 0.1;
+  static constexpr double kSpeed_rad_s = 2.0;
+  Pose T_world_start_;
 };
 
-// The rotation vector that turns the tip to how it stood at the start, world frame.
-Eigen::Vector3d turn_left(const Circle& circle, const Pose& T_world_tip) {
-  const Eigen::AngleAxisd turn(circle.T_world_start.linear() * T_world_tip.linear().transpose());
-  return turn.angle() * turn.axis();
-}
-
-// What the task wants: velocity of the tip's point above the link's angular velocity, world frame. The point goes along
-// with the circle and, where it has been driven away, returns to it no faster than 0.2 m/s; the orientation likewise.
-Vector6 wanted_velocity(const Circle& circle, double time_s, const Pose& T_world_tip) {
-  const Eigen::Vector3d back = 5.0 * (circle.place(time_s) - T_world_tip.translation());
-  const Eigen::Vector3d turn = 5.0 * turn_left(circle, T_world_tip);
-  Vector6 velocity;
-  velocity << circle.velocity(time_s) + back / std::max(1.0, back.norm() / 0.2), turn / std::max(1.0, turn.norm());
-  return velocity;
-}
-
-control::JointLimits limits_of_lwr() {
-  constexpr double kDegree = std::numbers::pi / 180;
-  control::JointLimits limits;
-  limits.highest_rad.resize(7);
-  limits.highest_rad << 170, 120, 170, 120, 170, 120, 170;
-  limits.highest_rad *= kDegree;
-  limits.lowest_rad = -limits.highest_rad;
-  limits.velocity_rad_s = control::JointVector::Constant(7, kDegree * 110);
-  limits.acceleration_rad_s2 = control::JointVector::Constant(7, kDegree * 300);
-  return limits;
-}
-
 int run() {
-  const robot::RobotModel model = robot::kuka_lwr4();
-  const Pose T_world_base = Pose::Identity();  // the base is the world
-  const std::size_t tip = model.link_index("lwr_7_link");
-  const std::vector<robot::LinkCapsule> parts = robot::moving_capsules(model);  // the first is of the tip's link
-
-  control::ControllerSettings settings;
-  settings.limits = limits_of_lwr();
-  settings.period_s = kPeriod_s;
-  settings.body.law = control::BodyLaw::approach_row;
+  const robot::PlacedRobot robot{robot::kuka_lwr4()};  // the base is the world
+  const std::size_t tip = robot.model.link_index("lwr_7_link");
+  avoidance::LoopSettings settings;
+  settings.parts = moving_capsules(robot.model);  // the first is of the tip's link
+  settings.end_effector_limits = true;
+  settings.controller.limits = avoidance::joint_limits(robot.model, 5.0);
+  settings.controller.body.law = control::BodyLaw::approach_row;
   control::JointVector q_start(7);
   q_start << 1.57, 0.1, 0.0, -1.55, 0.0, 1.2, 0.0;
-  settings.posture_rad = q_start;
-  control::Controller controller(settings);
-  control::SimulatedArm arm(settings.limits, kPeriod_s, q_start);  // YOURS: a RobotPort
-  robot::JointHistory history(7, 1000, 0.02, 0.01);                // for FrameIntake: where the arm was
-  avoidance::NoDistances source;                                   // YOURS: SearchDistances, fed by FrameIntake
+  settings.controller.posture_rad = q_start;
 
-  // All that a period needs, allocated here.
-  control::JointState state;
-  std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
-  std::vector<depthgrid::Capsule> parts_world(parts.size());
-  std::vector<avoidance::PartAnswer> answers(parts.size());
-  std::vector<control::BodyPoint> body(parts.size());
-  robot::Jacobian jacobian(6, 7);
-  control::Task task;
-  Circle circle;
-
-  if (!arm.read(state) || !controller.start(state)) {
-    std::fprintf(stderr, "the robot gives no state\n");
-    return 1;
-  }
+  Circle circle(robot.link_poses({q_start.data(), 7})[tip]);
+  avoidance::NoDistances source;  // YOURS: SearchDistances, fed by a FrameIntake
+  avoidance::AvoidanceLoop loop(robot, circle, source, settings);
+  control::SimulatedArm arm(settings.controller.limits, settings.controller.period_s, q_start);  // YOURS: a RobotPort
+  bool working = loop.start(arm);
   for (int k = 0; k <= 1000; ++k) {
-    const double now_s = k * kPeriod_s;
-    // 1. Where the robot is. Without a state: what shall happen then is yours.
-    if (!arm.read(state)) {
-      std::fprintf(stderr, "%.3f s: the robot gives no state\n", now_s);
-      return 1;
-    }
-    const std::span<const double> q(state.position_rad.data(), model.joints().size());
-    (void)history.add(now_s, q);
-    (void)model.link_poses(q, T_world_base, T_world_link);
-    if (k == 0) {
-      circle.T_world_start = T_world_link[tip];
-    }
-    // 2. How far its parts are from obstacles, and how each of the points in question moves with the joints.
-    robot::place(parts, T_world_link, parts_world);
-    source.evaluate(parts_world, now_s, answers);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      (void)model.jacobian(q, T_world_link, parts[i].link, answers[i].at_world, jacobian);
-      body[i] = {jacobian.topRows<3>(), answers[i].obstacle};
-    }
-    // 3. The task. The controller adds the repulsion to its first three rows: these have to be the velocity of a point.
-    (void)model.jacobian(q, T_world_link, tip, T_world_link[tip].translation(), jacobian);
-    task.jacobian = jacobian;
-    task.velocity = wanted_velocity(circle, now_s, T_world_link[tip]);
-    // 4. The command. Tasks of lower priority go into further_tasks.
-    const control::CycleOutput output =
-        controller.cycle({.task = task, .end_effector = answers[0].obstacle, .body = body, .further_tasks = {}});
-    if (!arm.write(output.command)) {
-      std::fprintf(stderr, "%.3f s: the robot did not take the command\n", now_s);
-    }
+    const double now_s = k * settings.controller.period_s;
+    working = loop.cycle(arm, now_s) && working;
     if (k % 250 == 0) {
+      const Pose& T_world_tip = loop.T_world_link()[tip];
       std::printf("%.1f s  tip %.1f mm from its place on the circle, turned by %.2f degrees\n", now_s,
-                  1000 * (T_world_link[tip].translation() - circle.place(now_s)).norm(),
-                  turn_left(circle, T_world_link[tip]).norm() * 180 / std::numbers::pi);
+                  1000 * circle.away(T_world_tip, now_s).norm(),
+                  circle.turned(T_world_tip).norm() * 180 / std::numbers::pi);
     }
     arm.advance();
   }
-  return 0;
+  return working ? 0 : 1;
 }
 
 }  // namespace

@@ -1,21 +1,23 @@
 #include "depthgrid/avoidance/avoidance_loop.hpp"
 
+#include <utility>
+
 #include "depthgrid/core/error.hpp"
 
 namespace depthgrid::avoidance {
 
-AvoidanceLoop::AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory& history, DistanceSource& source,
+AvoidanceLoop::AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceSource& source,
                              const LoopSettings& settings)
-    : model_(model),
-      history_(history),
+    : robot_(std::move(robot)),
+      task_(task),
       source_(source),
       settings_(settings),
       controller_(settings.controller),
-      task_(settings.task),
-      T_world_link_(model.links().size(), Pose::Identity()),
+      T_world_link_(robot_.model.links().size(), Pose::Identity()),
       parts_world_(settings.parts.size()),
       answers_(settings.parts.size()),
       at_link_(settings.parts.size(), Eigen::Vector3d::Zero()) {
+  const robot::RobotModel& model = robot_.model;
   const auto joints = static_cast<int>(model.joints().size());
   if (settings.controller.limits.joints() != joints) {
     fail(model.source(), ": limits for ", settings.controller.limits.joints(), " joints, the robot has ", joints);
@@ -34,7 +36,6 @@ AvoidanceLoop::AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory
   jacobian_.setZero(6, joints);
   const control::PointJacobian none = control::PointJacobian::Zero(3, joints);
   body_.assign(settings.parts.size() - (settings.end_effector_limits ? 0 : 1), {none, {}});
-  end_effector_task_ = {control::TaskJacobian::Zero(3, joints), control::TaskVector::Zero(3)};
 }
 
 bool AvoidanceLoop::start(control::RobotPort& port) noexcept {
@@ -46,7 +47,7 @@ bool AvoidanceLoop::start(control::RobotPort& port) noexcept {
 void AvoidanceLoop::jacobian(std::size_t link, const Eigen::Vector3d& p_world,
                              control::PointJacobian& result) noexcept {
   const std::span<const double> q(state_.position_rad.data(), static_cast<std::size_t>(state_.position_rad.size()));
-  (void)model_.jacobian(q, T_world_link_, link, p_world, jacobian_);
+  (void)robot_.model.jacobian(q, T_world_link_, link, p_world, jacobian_);
   result = jacobian_.topRows<3>();
 }
 
@@ -65,11 +66,9 @@ bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
   if (!started_) {
     return false;
   }
-  bool working = port.read(state_);
+  bool working = port.read(state_) && state_.position_rad.allFinite();
   const std::span<const double> q(state_.position_rad.data(), static_cast<std::size_t>(state_.position_rad.size()));
-  // Where the joints were a period ago says nothing about this time: the history then rather has a gap.
-  working = working && history_.add(now_s, q);
-  working = model_.link_poses(q, settings_.T_world_base, T_world_link_) && working;
+  working = robot_.link_poses(q, T_world_link_) && working;
   place(settings_.parts, T_world_link_, parts_world_);
   evaluate(now_s);
 
@@ -77,10 +76,8 @@ bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
   // for its distance.
   const std::size_t tip_link = settings_.parts[0].link;
   report_.end_effector_world = T_world_link_[tip_link].translation();
-  control::PointJacobian tip;
-  jacobian(tip_link, report_.end_effector_world, tip);
-  end_effector_task_.jacobian = tip;
-  end_effector_task_.velocity = task_.desired_velocity(report_.end_effector_world);
+  (void)robot_.model.jacobian(q, T_world_link_, tip_link, report_.end_effector_world, jacobian_);
+  tip_ = {T_world_link_[tip_link], jacobian_, now_s};
 
   const std::size_t first = settings_.end_effector_limits ? 0 : 1;
   for (std::size_t i = first; i < settings_.parts.size(); ++i) {
@@ -90,7 +87,7 @@ bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
   }
   report_.time_s = now_s;
   report_.output = controller_.cycle(
-      {.task = end_effector_task_, .end_effector = answers_[0].obstacle, .body = body_, .further_tasks = {}});
+      {.task = task_.rows(tip_), .end_effector = answers_[0].obstacle, .body = body_, .further_tasks = {}});
   ++cycles_;
   return port.write(report_.output.command) && working;
 }

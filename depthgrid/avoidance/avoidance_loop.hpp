@@ -1,7 +1,6 @@
 // The letter's loop around the distances: joint state in, position command out, every period.
 //
-//   q -> parts of the robot in the world -> distances and directions -> obstacles and Jacobians -> controller ->
-//   command
+//   q -> parts of the robot in the world -> distances, directions -> obstacles, Jacobians -> controller -> command
 #pragma once
 
 #include <array>
@@ -11,19 +10,17 @@
 
 #include "depthgrid/avoidance/distance_source.hpp"
 #include "depthgrid/control/controller.hpp"
-#include "depthgrid/control/polygon_task.hpp"
-#include "depthgrid/robot/joint_history.hpp"
-#include "depthgrid/robot/robot_model.hpp"
+#include "depthgrid/control/motion_task.hpp"
+#include "depthgrid/control/robot_port.hpp"
+#include "depthgrid/robot/placed_robot.hpp"
 #include "depthgrid/robot/robot_parts.hpp"
 
 namespace depthgrid::avoidance {
 
 struct LoopSettings {
   control::ControllerSettings controller;
-  control::PolygonSettings task;          ///< of the end effector's point
   std::vector<robot::LinkCapsule> parts;  ///< the first is the end effector: it is repelled; the others are the body
   bool end_effector_limits = false;       ///< whether the end effector's approach is limited like that of the body, too
-  Pose T_world_base = Pose::Identity();
   int evaluate_every = 1;  ///< periods between two evaluations; in between obstacles stand where they did
 };
 
@@ -38,18 +35,17 @@ struct CycleReport {
 /// One thread. cycle() neither allocates (as long as the source does not) nor locks nor throws.
 class AvoidanceLoop {
  public:
-  /// Model, history and source must outlive it. Throws Error when the controller's or task's settings are invalid,
-  /// there is no part, a part's link is none, or the limits are not those of the model's joints in number.
-  AvoidanceLoop(const robot::RobotModel& model, robot::JointHistory& history, DistanceSource& source,
+  /// Task and source must outlive it. Throws Error when the controller's settings are invalid, there is no part, a
+  /// part's link is none, or the limits are not those of the model's joints in number.
+  AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceSource& source,
                 const LoopSettings& settings);
 
   /// Takes the robot's state as the beginning. False when there is none or it is not finite: cycle() then does nothing.
   [[nodiscard]] bool start(control::RobotPort& port) noexcept;
 
-  /// One period at time `now_s`, on the clock of cameras and joint history. False when the robot gave no state or did
-  /// not take the command, or the history did not take the time. Without a state distances and Jacobians are those of
-  /// the last one, and the history gets no sample. Unless the last start() succeeded it writes nothing and returns
-  /// false.
+  /// One period at time `now_s`, on the clock of the cameras. False when the robot gave no state or did not take the
+  /// command. Without a state distances and Jacobians are those of the last one. Unless the last start() succeeded it
+  /// writes nothing and returns false. It feeds no joint history: a HistoryPort around `port` does.
   bool cycle(control::RobotPort& port, double now_s) noexcept;
 
   [[nodiscard]] const CycleReport& report() const noexcept { return report_; }
@@ -57,18 +53,16 @@ class AvoidanceLoop {
   [[nodiscard]] std::span<const PartAnswer> answers() const noexcept { return answers_; }
   [[nodiscard]] std::span<const Capsule> parts_world() const noexcept { return parts_world_; }
   [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
-  [[nodiscard]] const control::PolygonTask& task() const noexcept { return task_; }
 
  private:
   void evaluate(double now_s) noexcept;
   void jacobian(std::size_t link, const Eigen::Vector3d& p_world, control::PointJacobian& result) noexcept;
 
-  const robot::RobotModel& model_;
-  robot::JointHistory& history_;
+  robot::PlacedRobot robot_;
+  control::MotionTask& task_;
   DistanceSource& source_;
   LoopSettings settings_;
   control::Controller controller_;
-  control::PolygonTask task_;
   bool started_ = false;
   std::int64_t cycles_ = 0;
   control::JointState state_;
@@ -77,7 +71,7 @@ class AvoidanceLoop {
   std::vector<PartAnswer> answers_;
   std::vector<Eigen::Vector3d> at_link_;  ///< of the answers, in the frames of their links
   std::vector<control::BodyPoint> body_;
-  control::Task end_effector_task_;
+  control::EndEffector tip_;
   robot::Jacobian jacobian_;
   CycleReport report_;
 };

@@ -58,6 +58,10 @@ std::vector<Eigen::Vector3d> vertical_hexagon(const Eigen::Vector3d& centre_worl
 
 PolygonTask::PolygonTask(const PolygonSettings& settings) : settings_(settings) { validate(settings); }
 
+Task PolygonTask::rows(const EndEffector& tip) noexcept {
+  return {tip.jacobian.topRows(3), desired_velocity(tip.T_world_tip.translation())};
+}
+
 const Eigen::Vector3d& PolygonTask::next_vertex_world() const noexcept { return settings_.vertices_world[next_]; }
 
 Eigen::Vector3d PolygonTask::desired_velocity(const Eigen::Vector3d& p_world) noexcept {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "depthgrid/control/motion_task.hpp"
+
 namespace depthgrid::control {
 
 struct PolygonSettings {
@@ -26,9 +28,12 @@ void validate(const PolygonSettings& settings);
 
 /// Knows only the next vertex, so wherever the end effector was driven to, it goes on from there: straight to the
 /// vertex that it has not reached. Nothing but the constructor allocates, locks or throws.
-class PolygonTask {
+class PolygonTask final : public MotionTask {
  public:
   explicit PolygonTask(const PolygonSettings& settings);
+
+  /// Three rows: desired_velocity() of the tip's origin, however it is turned.
+  [[nodiscard]] Task rows(const EndEffector& tip) noexcept override;
 
   /// The velocity that the task wants at this position; counts a vertex that is reached. Zero for a position that is
   /// not finite.

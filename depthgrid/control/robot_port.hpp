@@ -8,7 +8,7 @@ namespace depthgrid::control {
 struct JointState {
   JointVector position_rad;
   JointVector velocity_rad_s;
-  double time_s = 0;  ///< of the measurement, on the robot's clock
+  double time_s = 0;  ///< of the measurement; on the cameras' clock where a history is fed with it
 };
 
 /// Where the joints shall be one period from now.

@@ -1,30 +1,56 @@
-// From depth images to frames: the robot is found in each image where it was at the time of the exposure.
+// From depth images to frames: the robot is found in each image where it was at the time of the exposure. Needs joint
+// positions over time, no controller.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/rig.hpp"
+#include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/robot_at_exposure.hpp"
 
 namespace depthgrid::robot {
 
-/// The robot in all cameras of a rig that do not move. One thread; allocates in its constructor only.
+/// What became of the robot in a camera's last image.
+struct IntakeReport {
+  JointsAtTime joints;         ///< of the exposure, or why they are not known
+  bool robot_removed = false;  ///< false: the robot is its own obstacle in this image
+};
+
+/// The robot in all cameras of a rig. Each camera may have a thread of its own, frames() counts as all of them;
+/// allocates in its constructor only.
 class FrameIntake {
  public:
-  /// Model and history must outlive it. Throws Error as RobotAtExposure does.
-  FrameIntake(const Rig& rig, const RobotModel& model, const JointHistory& history, const ExposureSettings& settings);
+  /// The history must outlive it. Throws Error as link_capsules() and RobotAtExposure do.
+  FrameIntake(const Rig& rig, const PlacedRobot& robot, const JointHistory& history, const ExposureSettings& settings,
+              const CapsuleOptions& capsules = {});
 
-  /// One image a camera, in the rig's order, all exposed about time_s on the history's clock. The frames point into
-  /// this object and to the images; good until the next call. Where the joint positions of the exposure are not known
-  /// the robot is not removed, and so is its own obstacle.
-  [[nodiscard]] std::span<const Frame> frames(std::span<const DepthView> images, double time_s) noexcept;
+  /// One camera's image with the robot in it. `seen`: depth, and the time on the history's clock; its robot is not
+  /// looked at. The camera stands where the rig says, or, one that moves, where it was at the exposure. Where the joint
+  /// positions of the exposure are not known the robot is not removed, and so is its own obstacle. The frame points
+  /// into this object and to the image; good until the camera's next one. A camera that the rig lacks gives no image.
+  [[nodiscard]] Frame frame(std::size_t camera, const Frame& seen) noexcept;
+  [[nodiscard]] Frame frame(std::size_t camera, const Frame& seen, const Pose& T_world_camera) noexcept;
+
+  /// All cameras that do not move, in the rig's order, each at its own time; those after the last of `seen` give no
+  /// image.
+  [[nodiscard]] std::span<const Frame> frames(std::span<const Frame> seen) noexcept;
+
+  /// Of each camera's last image, in the rig's order.
+  [[nodiscard]] std::span<const IntakeReport> report() const noexcept { return report_; }
+
+  /// By how much the padding is less than the camera's margin for readings at this depth, up to the image's corners:
+  /// more than 0, and the robot may be its own obstacle there. Nothing where the rig states no margins of the camera.
+  [[nodiscard]] std::optional<double> missing_padding_m(std::size_t camera, double depth_m) const noexcept;
 
  private:
-  std::vector<Pose> T_world_camera_;
+  std::vector<RigCamera> cameras_;
+  double padding_m_;
   std::vector<std::unique_ptr<RobotAtExposure>> robots_;
+  std::vector<IntakeReport> report_;
   std::vector<Frame> frames_;
 };
 

@@ -8,15 +8,16 @@
 
 namespace depthgrid::robot {
 
-RobotAtExposure::RobotAtExposure(const RobotModel& model, const JointHistory& history, const PinholeCamera& camera,
+RobotAtExposure::RobotAtExposure(PlacedRobot robot, const JointHistory& history, const PinholeCamera& camera,
                                  std::vector<LinkCapsule> capsules, const ExposureSettings& settings)
-    : model_(model),
+    : robot_(std::move(robot)),
       history_(history),
       settings_(settings),
       removal_(camera, std::move(capsules), settings.removal),
-      q_(model.joints().size()),
-      T_world_link_(model.links().size(), Pose::Identity()),
+      q_(robot_.model.joints().size()),
+      T_world_link_(robot_.model.links().size(), Pose::Identity()),
       motion_m_(removal_.capsules().size()) {
+  const RobotModel& model = robot_.model;
   if (!(std::isfinite(settings_.time_error_s) && settings_.time_error_s >= 0)) {
     fail(model.source(), ": the error of time is ", settings_.time_error_s, " s, must be finite and not negative");
   }
@@ -39,10 +40,10 @@ RobotAtExposure::RobotAtExposure(const RobotModel& model, const JointHistory& hi
 ExposedRobot RobotAtExposure::find(double time_s, const Pose& T_world_camera, const DepthView* reading) noexcept {
   ExposedRobot result;
   result.joints = history_.at(time_s, q_);
-  if (!result.joints.known() || !model_.link_poses(q_, settings_.T_world_base, T_world_link_)) {
+  if (!result.joints.known() || !robot_.link_poses(q_, T_world_link_)) {
     return result;
   }
-  motion_padding(model_, removal_.capsules(), T_world_link_, settings_.joint_speeds,
+  motion_padding(robot_.model, removal_.capsules(), T_world_link_, settings_.joint_speeds,
                  settings_.time_error_s + result.joints.time_error_s, motion_m_);
   result.view = removal_.find(T_world_link_, T_world_camera, motion_m_, reading);
   return result;

@@ -6,18 +6,17 @@
 
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/robot/joint_history.hpp"
-#include "depthgrid/robot/robot_model.hpp"
+#include "depthgrid/robot/placed_robot.hpp"
 #include "depthgrid/robot/robot_removal.hpp"
 
 namespace depthgrid::robot {
 
 struct ExposureSettings {
-  Pose T_world_base = Pose::Identity();
   RemovalSettings removal;
   /// How far the exposure's time may be from the joints' clock, half the exposure included.
   double time_error_s = 0;
   /// Greatest speeds within that time, rad/s or m/s, one a joint; empty: the model's limits.
-  std::vector<double> joint_speeds;
+  std::vector<double> joint_speeds{};
 };
 
 /// The robot in one image.
@@ -26,12 +25,12 @@ struct ExposedRobot {
   RobotView view;       ///< for Frame::robot; without robot where the positions are not known
 };
 
-/// One camera's robot. Model and history must outlive it. One thread at a time; allocates in its constructor only.
+/// One camera's robot. The history must outlive it. One thread at a time; allocates in its constructor only.
 class RobotAtExposure {
  public:
   /// Throws Error as RobotRemoval does, when the time error or a speed is negative or not finite, or there is not one
   /// speed a joint. A model without a speed limit needs joint_speeds.
-  RobotAtExposure(const RobotModel& model, const JointHistory& history, const PinholeCamera& camera,
+  RobotAtExposure(PlacedRobot robot, const JointHistory& history, const PinholeCamera& camera,
                   std::vector<LinkCapsule> capsules, const ExposureSettings& settings);
 
   /// The image is exposed about time_s, on the history's clock. `reading`: that image, or null (RobotRemoval::find).
@@ -44,7 +43,7 @@ class RobotAtExposure {
   [[nodiscard]] std::span<const double> motion_m() const noexcept { return motion_m_; }
 
  private:
-  const RobotModel& model_;
+  PlacedRobot robot_;
   const JointHistory& history_;
   ExposureSettings settings_;
   RobotRemoval removal_;

@@ -30,9 +30,9 @@ std::vector<LinkCapsule> nine_control_points(const RobotModel& model) {
           point_on(model, "lwr_2_link", 0, 0, 0.10)};
 }
 
-std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_joints) {
+std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_joints, const CapsuleOptions& options) {
   std::vector<LinkCapsule> parts;
-  for (const LinkCapsule& item : link_capsules(model)) {
+  for (const LinkCapsule& item : link_capsules(model, options)) {
     if (joints_above(model, item.link) >= least_joints) {
       parts.push_back(item);
     }
@@ -41,6 +41,16 @@ std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_join
     fail(model.source(), ": no link with a shape is moved by ", least_joints, " joints");
   }
   std::reverse(parts.begin(), parts.end());
+  return parts;
+}
+
+std::vector<LinkCapsule> tip_first(std::vector<LinkCapsule> parts, std::size_t tip_link) {
+  const auto tip = std::find_if(parts.begin(), parts.end(), [=](const auto& part) { return part.link == tip_link; });
+  if (tip == parts.end()) {
+    parts.insert(parts.begin(), {tip_link, {}});
+  } else {
+    std::rotate(parts.begin(), tip, tip + 1);
+  }
   return parts;
 }
 

@@ -16,6 +16,11 @@ namespace depthgrid::robot {
 /// `least_joints` joints move are left out: the first link of an upright arm turns about its own axis, so it stays
 /// where it is, and yet what stands beside the base would limit the joint. Throws Error when nothing is left or a shape
 /// cannot be read.
-[[nodiscard]] std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_joints = 2);
+[[nodiscard]] std::vector<LinkCapsule> moving_capsules(const RobotModel& model, int least_joints = 2,
+                                                       const CapsuleOptions& options = {});
+
+/// The parts with one of this link first, as the loop wants that of the end effector; a link without a part gets a
+/// point, its origin.
+[[nodiscard]] std::vector<LinkCapsule> tip_first(std::vector<LinkCapsule> parts, std::size_t tip_link);
 
 }  // namespace depthgrid::robot

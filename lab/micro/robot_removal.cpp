@@ -41,7 +41,7 @@ void measure(const RobotModel& model, double distance_m, double time_error_s, bo
   settings.removal.padding_m = 0.05;
   settings.time_error_s = time_error_s;
   settings.joint_speeds.assign(7, 0.5);
-  robot::RobotAtExposure exposure(model, history, camera, robot::link_capsules(model), settings);
+  robot::RobotAtExposure exposure({model}, history, camera, robot::link_capsules(model), settings);
   const std::vector<std::uint16_t> units = image(engine);
   const DepthView reading = depth_view(units, 640, 480, 0.001);
   Samples medians_ms;  // of each pose: one slow image is the machine's doing, a slow median the pose's

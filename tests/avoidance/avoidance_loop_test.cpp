@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "avoidance/flat_wall.hpp"
+#include "depthgrid/avoidance/history_port.hpp"
 #include "depthgrid/avoidance/search_distances.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
 #include "support/allocation_guard.hpp"
@@ -23,14 +24,15 @@ class Loop : public ::testing::Test {
  protected:
   robot::RobotModel model_ = robot::kuka_lwr4();
   robot::JointHistory history_{7, 256, 0.02, 0.01};
+  control::PolygonTask task_{test::hexagon(model_)};
   NoDistances nothing_;
 };
 
 TEST_F(Loop, RefusesSettingsThatDoNotFit) {
   const auto refused = [&](const LoopSettings& settings) {
-    return thrown_message([&] { AvoidanceLoop(model_, history_, nothing_, settings); });
+    return thrown_message([&] { AvoidanceLoop({model_}, task_, nothing_, settings); });
   };
-  const LoopSettings good = test::loop_settings(model_, robot::nine_control_points(model_));
+  const LoopSettings good = test::loop_settings(robot::nine_control_points(model_));
   EXPECT_EQ(refused(good), "");
   LoopSettings bad = good;
   bad.parts.clear();
@@ -60,44 +62,46 @@ class FailingArm final : public control::RobotPort {
 };
 
 TEST_F(Loop, CommandsNothingBeforeAStartThatSucceeded) {
-  const LoopSettings settings = test::loop_settings(model_, robot::nine_control_points(model_));
-  AvoidanceLoop loop(model_, history_, nothing_, settings);
+  const LoopSettings settings = test::loop_settings(robot::nine_control_points(model_));
+  AvoidanceLoop loop({model_}, task_, nothing_, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
-  FailingArm port(arm);
+  FailingArm failing(arm);
+  HistoryPort port(failing, history_);
   EXPECT_FALSE(loop.cycle(port, 0)) << "never started";
-  port.readable = false;
+  failing.readable = false;
   EXPECT_FALSE(loop.start(port));
-  port.readable = true;
+  failing.readable = true;
   EXPECT_FALSE(loop.cycle(port, kPeriod)) << "the start failed";
-  EXPECT_EQ(port.written, 0);
+  EXPECT_EQ(failing.written, 0);
   std::vector<double> q(7);
   EXPECT_EQ(history_.at(kPeriod, q).answer, robot::JointAnswer::no_samples);
 
   ASSERT_TRUE(loop.start(port));
   EXPECT_TRUE(loop.cycle(port, 2 * kPeriod));
-  EXPECT_EQ(port.written, 1);
+  EXPECT_EQ(failing.written, 1);
   EXPECT_LT((loop.report().output.command.position_rad - test::bent()).norm(), 0.01);
 
   // A second start that fails ends the first.
-  port.readable = false;
+  failing.readable = false;
   EXPECT_FALSE(loop.start(port));
-  port.readable = true;
+  failing.readable = true;
   EXPECT_FALSE(loop.cycle(port, 3 * kPeriod));
-  EXPECT_EQ(port.written, 1);
+  EXPECT_EQ(failing.written, 1);
 }
 
 TEST_F(Loop, AddsNoPositionToTheHistoryWithoutAState) {
-  const LoopSettings settings = test::loop_settings(model_, robot::nine_control_points(model_));
+  const LoopSettings settings = test::loop_settings(robot::nine_control_points(model_));
   robot::JointHistory history(7, 256, 1.5 * kPeriod, 0.0);  // a missing sample leaves a gap
-  AvoidanceLoop loop(model_, history, nothing_, settings);
+  AvoidanceLoop loop({model_}, task_, nothing_, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
-  FailingArm port(arm);
+  FailingArm failing(arm);
+  HistoryPort port(failing, history);
   ASSERT_TRUE(loop.start(port));
   std::vector<double> q(7);
   for (int k = 0; k < 10; ++k) {
-    port.readable = k != 5;
+    failing.readable = k != 5;
     EXPECT_EQ(loop.cycle(port, k * kPeriod), k != 5) << k;
-    EXPECT_EQ(port.written, k + 1) << "it goes on commanding";
+    EXPECT_EQ(failing.written, k + 1) << "it goes on commanding";
     EXPECT_EQ(history.at(k * kPeriod, q).known(), k != 5) << k;
     arm.advance();
   }
@@ -107,8 +111,8 @@ TEST_F(Loop, AddsNoPositionToTheHistoryWithoutAState) {
 }
 
 TEST_F(Loop, FollowsTheHexagonWithNothingNear) {
-  const LoopSettings settings = test::loop_settings(model_, robot::nine_control_points(model_));
-  AvoidanceLoop loop(model_, history_, nothing_, settings);
+  const LoopSettings settings = test::loop_settings(robot::nine_control_points(model_));
+  AvoidanceLoop loop({model_}, task_, nothing_, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   for (int k = 0; k < 3000; ++k) {
@@ -117,15 +121,15 @@ TEST_F(Loop, FollowsTheHexagonWithNothingNear) {
     arm.advance();
   }
   // 6 s at 0.2 m an edge and 0.40 m/s, corners included.
-  EXPECT_GE(loop.task().vertices_reached(), 8);
+  EXPECT_GE(task_.vertices_reached(), 8);
 }
 
 TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
   const Rig rig = test::one_camera();
-  LoopSettings settings = test::loop_settings(model_, robot::moving_capsules(model_));
+  LoopSettings settings = test::loop_settings(robot::moving_capsules(model_));
   settings.end_effector_limits = true;
   SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
-  AvoidanceLoop loop(model_, history_, source, settings);
+  AvoidanceLoop loop({model_}, task_, source, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   (void)loop.cycle(arm, 0);
@@ -139,7 +143,8 @@ TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
   }
   // The law of the risk leaves 1 - f(0) of the task, and of each joint's speed.
   const auto& repulsion = settings.controller.repulsion;
-  const double left_m = (1 - control::risk(0.0, repulsion.rho_m, repulsion.alpha)) * settings.task.speed_m_s * 0.4;
+  const double left_m =
+      (1 - control::risk(0.0, repulsion.rho_m, repulsion.alpha)) * test::hexagon(model_).speed_m_s * 0.4;
   EXPECT_LE((loop.report().end_effector_world - start_world).norm(), left_m + 1e-9);
   EXPECT_LT(left_m, 0.0005);
 }
@@ -147,21 +152,22 @@ TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
 TEST_F(Loop, DoesNotAllocateWithTheSearch) {
   DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
   const Rig rig = test::one_camera();
-  LoopSettings settings = test::loop_settings(model_, robot::moving_capsules(model_));
+  LoopSettings settings = test::loop_settings(robot::moving_capsules(model_));
   settings.end_effector_limits = true;
   SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
-  AvoidanceLoop loop(model_, history_, source, settings);
-  robot::FrameIntake intake(rig, model_, history_, {});
+  AvoidanceLoop loop({model_}, task_, source, settings);
+  robot::FrameIntake intake(rig, {model_}, history_, {});
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
-  ASSERT_TRUE(loop.start(arm));
+  HistoryPort port(arm, history_);
+  ASSERT_TRUE(loop.start(port));
   const std::vector<std::uint16_t> wall(64UL * 48UL, 3500);
-  const DepthView view = depth_view(wall, 64, 48, 0.001);
   bool working = true;
   for (int k = 0; k < 60; ++k) {
     const AllocationGuard guard;
-    working = loop.cycle(arm, k * kPeriod) && working;
+    working = loop.cycle(port, k * kPeriod) && working;
     if (k % 10 == 0) {
-      working = source.take(intake.frames({&view, 1}, k * kPeriod)) && working;
+      const Frame seen{depth_view(wall, 64, 48, 0.001), {}, k * kPeriod};
+      working = source.take(intake.frames({&seen, 1})) && intake.report()[0].robot_removed && working;
     }
     arm.advance();
     ASSERT_EQ(guard.allocations(), 0) << "cycle " << k;
@@ -170,21 +176,46 @@ TEST_F(Loop, DoesNotAllocateWithTheSearch) {
   EXPECT_GT(source.answered(), 0);
 }
 
-TEST(RobotParts, BeginWithTheFlangeAndLeaveTheBaseOut) {
-  const robot::RobotModel model = robot::kuka_lwr4();
-  const auto points = robot::nine_control_points(model);
-  ASSERT_EQ(points.size(), 9U);
-  EXPECT_EQ(points.front().link, model.link_index("lwr_7_link"));
-  for (const robot::LinkCapsule& point : points) {
-    EXPECT_EQ(point.capsule.radius_m, 0);
-    EXPECT_EQ(point.capsule.a, point.capsule.b);
+/// Keeps the flange where and as it is: six rows.
+class Hold final : public control::MotionTask {
+ public:
+  explicit Hold(Pose T_world_tip) : T_world_tip_(std::move(T_world_tip)) {}
+  control::Task rows(const control::EndEffector& tip) noexcept override {
+    ++asked;
+    time_s = tip.time_s;
+    const Eigen::AngleAxisd turn(T_world_tip_.linear() * tip.T_world_tip.linear().transpose());
+    control::TaskVector velocity(6);
+    velocity << T_world_tip_.translation() - tip.T_world_tip.translation(), turn.angle() * turn.axis();
+    return {tip.jacobian, 5.0 * velocity};
   }
-  const auto capsules = robot::moving_capsules(model);
-  ASSERT_EQ(capsules.size(), 6U);
-  EXPECT_EQ(capsules.front().link, model.link_index("lwr_7_link"));
-  EXPECT_EQ(capsules.back().link, model.link_index("lwr_2_link"));
-  EXPECT_EQ(robot::moving_capsules(model, 1).size(), 7U);
-  EXPECT_THAT(thrown_message([&] { (void)robot::moving_capsules(model, 9); }), HasSubstr("moved by 9 joints"));
+  int asked = 0;
+  double time_s = -1;
+
+ private:
+  Pose T_world_tip_;
+};
+
+TEST_F(Loop, MovesByATaskOfSixRows) {
+  Pose goal = test::flange(model_);
+  goal.translation() += Eigen::Vector3d(0.05, 0, -0.05);
+  goal.rotate(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()));
+  // Where the base stands elsewhere the whole task does.
+  robot::PlacedRobot placed{model_};
+  placed.T_world_base.translation() = Eigen::Vector3d(1, -2, 0.7);
+  placed.T_world_base.linear() = Eigen::AngleAxisd(2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  Hold task(placed.T_world_base * goal);
+  const LoopSettings settings = test::loop_settings(robot::nine_control_points(model_));
+  AvoidanceLoop loop(placed, task, nothing_, settings);
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  ASSERT_TRUE(loop.start(arm));
+  for (int k = 0; k < 1000; ++k) {
+    ASSERT_TRUE(loop.cycle(arm, k * kPeriod)) << k;
+    arm.advance();
+  }
+  EXPECT_EQ(task.asked, 1000);
+  EXPECT_EQ(task.time_s, 999 * kPeriod);
+  const Pose& reached = loop.T_world_link()[model_.link_index("lwr_7_link")];
+  EXPECT_LT((reached.matrix() - (placed.T_world_base * goal).matrix()).cwiseAbs().maxCoeff(), 0.001);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "depthgrid/avoidance/avoidance_loop.hpp"
+#include "depthgrid/control/polygon_task.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
@@ -40,7 +41,7 @@ inline control::JointVector bent() {
   return q;
 }
 
-inline LoopSettings loop_settings(const robot::RobotModel& model, std::vector<robot::LinkCapsule> parts) {
+inline LoopSettings loop_settings(std::vector<robot::LinkCapsule> parts) {
   LoopSettings settings;
   control::JointLimits& limits = settings.controller.limits;
   limits.highest_rad = control::JointVector::Constant(7, 2.9);
@@ -49,12 +50,17 @@ inline LoopSettings loop_settings(const robot::RobotModel& model, std::vector<ro
   limits.acceleration_rad_s2 = control::JointVector::Constant(7, 5.2);
   settings.controller.posture_rad = bent();
   settings.parts = std::move(parts);
-  std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
-  const control::JointVector q = bent();
-  (void)model.link_poses({q.data(), 7}, Pose::Identity(), T_world_link);
-  settings.task.vertices_world = control::vertical_hexagon(T_world_link[model.link_index("lwr_7_link")].translation(),
-                                                           0.2, Eigen::Vector3d::UnitY());
   return settings;
+}
+
+/// The flange of the bent arm.
+inline Pose flange(const robot::RobotModel& model) {
+  const control::JointVector q = bent();
+  return robot::PlacedRobot{model}.link_poses({q.data(), 7})[model.link_index("lwr_7_link")];
+}
+
+inline control::PolygonSettings hexagon(const robot::RobotModel& model) {
+  return {.vertices_world = control::vertical_hexagon(flange(model).translation(), 0.2, Eigen::Vector3d::UnitY())};
 }
 
 }  // namespace depthgrid::avoidance::test

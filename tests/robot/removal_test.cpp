@@ -318,7 +318,7 @@ TEST(RobotAtExposure, FromTheTimeToTheImage) {
   const View view(random, 64, 48);
   ExposureSettings settings;
   settings.time_error_s = 0.02;
-  RobotAtExposure robot(kuka(), history, view.camera, link_capsules(kuka()), settings);
+  RobotAtExposure robot({kuka()}, history, view.camera, link_capsules(kuka()), settings);
   const ExposedRobot exposed = robot.find(0.0471, view.T_world_camera);
   EXPECT_EQ(exposed.joints.answer, JointAnswer::interpolated);
   ASSERT_NE(exposed.view.near_m, nullptr);
@@ -329,7 +329,7 @@ TEST(RobotAtExposure, FromTheTimeToTheImage) {
   EXPECT_EQ(robot.find(0.2, view.T_world_camera).view.near_m, nullptr);
   settings.joint_speeds = {1, 2};
   EXPECT_NE(test::thrown_message(
-                [&] { const RobotAtExposure unused(kuka(), history, view.camera, link_capsules(kuka()), settings); }),
+                [&] { const RobotAtExposure unused({kuka()}, history, view.camera, link_capsules(kuka()), settings); }),
             "");
   DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
   const std::vector<std::uint16_t> units(64 * 48, 1500);

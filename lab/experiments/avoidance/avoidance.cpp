@@ -212,8 +212,7 @@ void run_avoidance_experiment(const Options& options, ExperimentReport& report) 
                    "m/s. Two cameras of " +
                    std::to_string(width_px) + " x " + std::to_string(3 * width_px / 4) +
                    " pixels in the letter's arrangement, 30 Hz, images 20 ms late, commands every 2 ms.");
-  const std::vector<Eigen::Vector3d> hexagon =
-      loop_settings(Method::none, model, comparisons[0].settings).task.vertices_world;
+  const std::vector<Eigen::Vector3d> hexagon = experiments::hexagon(model).vertices_world;
   std::size_t done = 0;
   const std::size_t total = comparisons.size() * kMethods.size();
   for (Comparison& comparison : comparisons) {

@@ -3,9 +3,17 @@
 #include <numbers>
 
 #include "depthgrid/avoidance/grid_distances.hpp"
+#include "depthgrid/avoidance/model_limits.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
+#include "depthgrid/views/surveillance_radius.hpp"
 
 namespace depthgrid::experiments {
+
+namespace {
+
+constexpr double kAcceleration_rad_s2 = 300 * std::numbers::pi / 180;
+
+}  // namespace
 
 std::string_view title(Method method) noexcept {
   constexpr std::array<std::string_view, 5> kTitles{"no avoidance", "letter, 1 camera", "letter, 2 cameras",
@@ -28,25 +36,13 @@ control::JointVector start_rad() {
 
 Eigen::Vector3d hexagon_centre_world(const robot::RobotModel& model) {
   const control::JointVector q = start_rad();
-  std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
-  (void)model.link_poses({q.data(), static_cast<std::size_t>(q.size())}, Pose::Identity(), T_world_link);
-  return T_world_link[model.link_index("lwr_7_link")].translation();
+  return robot::PlacedRobot{model}
+      .link_poses({q.data(), static_cast<std::size_t>(q.size())})[model.link_index("lwr_7_link")]
+      .translation();
 }
 
-control::JointLimits joint_limits(const robot::RobotModel& model) {
-  const auto count = static_cast<Eigen::Index>(model.joints().size());
-  control::JointLimits limits;
-  limits.lowest_rad.resize(count);
-  limits.highest_rad.resize(count);
-  limits.velocity_rad_s.resize(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const robot::Joint& joint = model.joints()[static_cast<std::size_t>(i)];
-    limits.lowest_rad[i] = joint.lower;
-    limits.highest_rad[i] = joint.upper;
-    limits.velocity_rad_s[i] = joint.max_speed;
-  }
-  limits.acceleration_rad_s2 = control::JointVector::Constant(count, 300 * std::numbers::pi / 180);
-  return limits;
+control::PolygonSettings hexagon(const robot::RobotModel& model, double radius_m) {
+  return {.vertices_world = control::vertical_hexagon(hexagon_centre_world(model), radius_m, Eigen::Vector3d::UnitY())};
 }
 
 views::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings, double ignored_pocket_m) {
@@ -61,8 +57,8 @@ views::Settings search_settings(const Rig& rig, const AvoidanceSettings& setting
   result.v_max_m_s = settings.v_max_m_s;
   result.resolution_m = settings.resolution_m;
   // An image is at most this old when it is asked: what is beyond rho then still is.
-  result.rho_m =
-      settings.rho_m + settings.v_max_m_s * (settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s);
+  result.rho_m = views::surveillance_radius_m(settings.rho_m, settings.v_max_m_s,
+                                              settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s);
   return result;
 }
 
@@ -91,19 +87,17 @@ std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig&
   return std::make_unique<avoidance::GridDistances>(rig, grid);
 }
 
-avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model, const AvoidanceSettings& settings,
-                                      double hexagon_radius_m) {
+avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
+                                      const AvoidanceSettings& settings) {
   avoidance::LoopSettings result;
   result.evaluate_every = settings.evaluate_every;
   control::ControllerSettings& controller = result.controller;
-  controller.limits = joint_limits(model);
+  controller.limits = avoidance::joint_limits(model, kAcceleration_rad_s2);
   controller.period_s = settings.period_s;
   controller.posture_rad = start_rad();
   controller.repulsion.rho_m = settings.rho_m;
   controller.repulsion.v_max_m_s = settings.repulsion_m_s;
   controller.body.rho_m = settings.rho_m;
-  result.task.vertices_world =
-      control::vertical_hexagon(hexagon_centre_world(model), hexagon_radius_m, Eigen::Vector3d::UnitY());
   if (is_search(method)) {
     controller.body.law = control::BodyLaw::approach_row;
     controller.body.gain_per_s = settings.approach_gain_per_s;

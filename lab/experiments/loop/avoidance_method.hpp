@@ -9,6 +9,7 @@
 
 #include "depthgrid/avoidance/avoidance_loop.hpp"
 #include "depthgrid/avoidance/search_distances.hpp"
+#include "depthgrid/control/polygon_task.hpp"
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/robot/robot_at_exposure.hpp"
 #include "lab/experiments/loop/avoidance_motion.hpp"
@@ -57,8 +58,8 @@ struct AvoidanceSettings {
 [[nodiscard]] control::JointVector start_rad();
 [[nodiscard]] Eigen::Vector3d hexagon_centre_world(const robot::RobotModel& model);
 
-/// Of the model's ranges and speeds; 300 degrees / s^2.
-[[nodiscard]] control::JointLimits joint_limits(const robot::RobotModel& model);
+/// What the flange passes.
+[[nodiscard]] control::PolygonSettings hexagon(const robot::RobotModel& model, double radius_m = kHexagonRadius_m);
 
 [[nodiscard]] views::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings,
                                               double ignored_pocket_m = 0);
@@ -70,7 +71,6 @@ struct AvoidanceSettings {
                                                                      std::size_t parts);
 
 [[nodiscard]] avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
-                                                    const AvoidanceSettings& settings,
-                                                    double hexagon_radius_m = kHexagonRadius_m);
+                                                    const AvoidanceSettings& settings);
 
 }  // namespace depthgrid::experiments

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depthgrid/avoidance/history_port.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/core/error.hpp"
 #include "lab/experiments/loop/contact_watch.hpp"
@@ -29,23 +30,26 @@ class Run {
         common_(settings.common),
         method_(method),
         rig_(avoidance_rig(std::max(1, cameras_of(method)), common_.width_px, common_.sensor)),
-        loop_settings_(loop_settings(method, model, common_, motion.hexagon_radius_m)),
+        loop_settings_(loop_settings(method, model, common_)),
+        hexagon_(hexagon(model, motion.hexagon_radius_m)),
+        task_(hexagon_),
         history_(model.joints().size(), 256, 0.02, 0.0),
         source_(make_source(method, rig_, common_, loop_settings_.parts.size())),
-        loop_(model, history_, *source_, loop_settings_),
+        loop_({model}, task_, *source_, loop_settings_),
         arm_(loop_settings_.controller.limits, common_.period_s, start_rad()),
+        port_(arm_, history_),
         cell_(model, motion),
         images_(rig_, model, history_, cell_, *source_, common_, settings.seed, settings.on_frame),
         contacts_(method, model, loop_, loop_settings_.parts, common_) {}
 
   RunResult result() {
-    need(loop_.start(arm_), "the loop's start", 0);
     const auto periods = static_cast<std::int64_t>(std::llround(settings_.duration_s / common_.period_s));
     // The first images are there before the arm moves.
     place_at_rest();
+    need(loop_.start(port_), "the loop's start", 0);
     for (std::int64_t k = 0; k < periods; ++k) {
       const double time_s = static_cast<double>(k) * common_.period_s;
-      need(loop_.cycle(arm_, time_s), "the loop's cycle", time_s);
+      need(loop_.cycle(port_, time_s), "the loop's cycle", time_s);
       cell_.update(time_s, loop_.T_world_link());
       watch(k, time_s);
       expose(k, time_s);
@@ -84,7 +88,7 @@ class Run {
 
   void watch(std::int64_t k, double time_s) {
     const Eigen::Vector3d tip = loop_.report().end_effector_world;
-    const double speed_m_s = k > 0 ? (tip - tip_before_).norm() / common_.period_s : loop_settings_.task.speed_m_s;
+    const double speed_m_s = k > 0 ? (tip - tip_before_).norm() / common_.period_s : hexagon_.speed_m_s;
     tip_before_ = tip;
     const auto person = cell_.to_person();
     const auto object = cell_.to_objects();
@@ -93,7 +97,7 @@ class Run {
     result_.summary.smallest_person_m = std::min(result_.summary.smallest_person_m, person_m);
     result_.summary.object_contacts += object_m <= 0 && object_before_m_ > 0 ? 1 : 0;
     object_before_m_ = object_m;
-    if (k > 0 && speed_m_s < kSlowShare * loop_settings_.task.speed_m_s) {
+    if (k > 0 && speed_m_s < kSlowShare * hexagon_.speed_m_s) {
       result_.summary.stopped_s += common_.period_s;
       result_.summary.false_stop_s += std::min(person_m, object_m) > common_.rho_m ? common_.period_s : 0.0;
     }
@@ -113,11 +117,11 @@ class Run {
   }
 
   void finish_task() {
-    const auto& vertices = loop_settings_.task.vertices_world;
-    const auto reached = static_cast<std::size_t>(loop_.task().vertices_reached());
-    result_.vertices = loop_.task().vertices_reached();
+    const auto& vertices = hexagon_.vertices_world;
+    const auto reached = static_cast<std::size_t>(task_.vertices_reached());
+    result_.vertices = task_.vertices_reached();
     const double edge_m = (vertices[1] - vertices[0]).norm();
-    const double left_m = (loop_.task().next_vertex_world() - tip_before_).norm();
+    const double left_m = (task_.next_vertex_world() - tip_before_).norm();
     result_.summary.task_share = static_cast<double>(reached) + std::clamp(1 - left_m / edge_m, 0.0, 1.0);
   }
 
@@ -127,10 +131,13 @@ class Run {
   Method method_;
   Rig rig_;
   avoidance::LoopSettings loop_settings_;
+  control::PolygonSettings hexagon_;
+  control::PolygonTask task_;
   robot::JointHistory history_;
   std::unique_ptr<avoidance::DistanceSource> source_;
   avoidance::AvoidanceLoop loop_;
   control::SimulatedArm arm_;
+  avoidance::HistoryPort port_;
   AvoidanceCell cell_;
   ImageDelivery images_;
   ContactWatch contacts_;

@@ -14,12 +14,12 @@ ImageDelivery::ImageDelivery(const Rig& rig, const robot::RobotModel& model, con
       source_(source),
       settings_(settings),
       on_frame_(std::move(on_frame)),
-      intake_(rig, model, history, exposure_settings(settings)),
+      intake_(rig, {model}, history, exposure_settings(settings)),
       sensors_(rig, {.seed = seed}) {}
 
 void ImageDelivery::expose(double time_s) {
   cell_.render(rig_, ideal_m_);
-  Exposure exposure{time_s, {}, {}};
+  Exposure exposure{time_s, {}};
   if (settings_.sensor == "ideal") {
     exposure.measured_m = ideal_m_;
   } else {
@@ -35,12 +35,12 @@ void ImageDelivery::expose(double time_s) {
 
 void ImageDelivery::deliver(double time_s) {
   while (!on_the_way_.empty() && on_the_way_.front().time_s + settings_.frame_latency_s <= time_s + 1e-9) {
-    Exposure& exposure = on_the_way_.front();
+    const Exposure& exposure = on_the_way_.front();
+    std::vector<Frame> seen;
     for (const DepthImage& image : exposure.measured_m) {
-      exposure.views.push_back(
-          depth_view(std::span(image.data(), image.index(0, image.height_px())), image.width_px(), image.height_px()));
+      seen.push_back({depth_view(image), {}, exposure.time_s});
     }
-    if (!source_.take(intake_.frames(exposure.views, exposure.time_s))) {
+    if (!source_.take(intake_.frames(seen))) {
       fail("simulated run: the images of ", exposure.time_s, " s are not taken");
     }
     on_the_way_.pop_front();

@@ -35,7 +35,6 @@ class ImageDelivery {
   struct Exposure {
     double time_s = 0;
     std::vector<DepthImage> measured_m;
-    std::vector<DepthView> views;
   };
 
   const Rig& rig_;

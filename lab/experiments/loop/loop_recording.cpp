@@ -56,10 +56,18 @@ std::optional<std::size_t> LoopRecording::frame_at(std::int64_t period) const no
   return frame < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(frame));
 }
 
+std::vector<Frame> LoopRecording::seen(std::size_t frame, double time_s) const {
+  std::vector<Frame> seen;
+  for (const DepthView& view : frames_[frame].views) {
+    seen.push_back({view, {}, time_s});
+  }
+  return seen;
+}
+
 bool RecordedArm::read(control::JointState& state) noexcept {
   state.position_rad = recording_.joints(period_);
   state.velocity_rad_s = control::JointVector::Zero(state.position_rad.size());
-  state.time_s = static_cast<double>(period_) * recording_.period_s();
+  state.time_s = time_s_;
   return true;
 }
 

@@ -26,7 +26,8 @@ class LoopRecording {
   [[nodiscard]] const control::JointVector& joints(std::int64_t period) const noexcept;
   /// The frame that is exposed in period k, if any: views on 16-bit images, one a camera.
   [[nodiscard]] std::optional<std::size_t> frame_at(std::int64_t period) const noexcept;
-  [[nodiscard]] std::span<const DepthView> views(std::size_t frame) const noexcept { return frames_[frame].views; }
+  /// As if exposed at this time.
+  [[nodiscard]] std::vector<Frame> seen(std::size_t frame, double time_s) const;
   /// The period in which a frame is exposed first.
   [[nodiscard]] std::int64_t period_of(std::size_t frame) const noexcept { return frames_[frame].period; }
 
@@ -46,17 +47,21 @@ class LoopRecording {
   std::vector<std::int64_t> frame_of_period_;  ///< -1: none
 };
 
-/// The arm that stands wherever the recording says, and goes nowhere else.
+/// The arm that stands wherever the recording says, at a time that the caller says, and goes nowhere else.
 class RecordedArm final : public control::RobotPort {
  public:
   explicit RecordedArm(const LoopRecording& recording) : recording_(recording) {}
-  void set_period(std::int64_t period) noexcept { period_ = period; }
+  void set_period(std::int64_t period, double time_s) noexcept {
+    period_ = period;
+    time_s_ = time_s;
+  }
   [[nodiscard]] bool read(control::JointState& state) noexcept override;
   [[nodiscard]] bool write(const control::JointCommand& command) noexcept override;
 
  private:
   const LoopRecording& recording_;
   std::int64_t period_ = 0;
+  double time_s_ = 0;
 };
 
 }  // namespace depthgrid::experiments

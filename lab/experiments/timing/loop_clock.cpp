@@ -12,6 +12,7 @@
 #include <stop_token>
 #include <thread>
 
+#include "depthgrid/avoidance/history_port.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
@@ -86,26 +87,27 @@ struct Parts {
       : model(robot::kuka_lwr4()),
         loop_settings(settings_of(method, which, model, settings)),
         history(model.joints().size(), 256, 0.02, 0.0),
-        intake(recording.rig(), model, history, exposure_settings(settings)),
+        intake(recording.rig(), {model}, history, exposure_settings(settings)),
         source(method == Method::search ? std::make_unique<avoidance::SearchDistances>(
                                               recording.rig(), search_settings(recording.rig(), settings),
                                               loop_settings.parts.size(), budget)
                                         : make_source(method, recording.rig(), settings, loop_settings.parts.size())),
         timed(*source),
-        loop(model, history, timed, loop_settings),
-        arm(recording) {}
+        task(hexagon(model)),
+        loop({model}, task, timed, loop_settings),
+        arm(recording),
+        port(arm, history) {}
 
   /// Throws Error, as nothing of a recording can fail.
   void start() {
-    if (!loop.start(arm)) {
+    if (!loop.start(port)) {
       fail("timing: the loop does not start at the recorded joint positions");
     }
   }
 
   /// The images of one exposure with the joint positions of then, before any cycle at that time. Throws Error.
-  void take(const control::JointVector& q, std::span<const DepthView> views, double exposed_s) {
-    if (!history.add(exposed_s, {q.data(), static_cast<std::size_t>(q.size())}) ||
-        !timed.take(intake.frames(views, exposed_s))) {
+  void take(const control::JointVector& q, const std::vector<Frame>& seen, double exposed_s) {
+    if (!history.add(exposed_s, {q.data(), static_cast<std::size_t>(q.size())}) || !timed.take(intake.frames(seen))) {
       fail("timing: the images of ", exposed_s, " s are not taken");
     }
   }
@@ -116,8 +118,10 @@ struct Parts {
   robot::FrameIntake intake;
   std::unique_ptr<avoidance::DistanceSource> source;
   TimedSource timed;
+  control::PolygonTask task;
   avoidance::AvoidanceLoop loop;
   RecordedArm arm;
+  avoidance::HistoryPort port;
 };
 
 }  // namespace
@@ -137,13 +141,13 @@ FreeRun run_free(const LoopRecording& recording, Method method, LoopParts parts,
       const std::int64_t later = c % 32 + 1;
       if (later == 1) {
         now_s += 1.0;
-        all.take(recording.joints(period), recording.views(frame), now_s);
+        all.take(recording.joints(period), recording.seen(frame, now_s), now_s);
       }
-      all.arm.set_period(period + later);
       const double at_s = now_s + recording.period_s() * static_cast<double>(later);
+      all.arm.set_period(period + later, at_s);
       const auto begin = Clock::now();
       const double begin_s = lab::processor_time_s();
-      const bool done = all.loop.cycle(all.arm, at_s);
+      const bool done = all.loop.cycle(all.port, at_s);
       result.cycle_s.push_back(lab::processor_time_s() - begin_s);
       result.wall_s += seconds(Clock::now() - begin);
       result.evaluate_s += all.timed.evaluate_s();
@@ -159,9 +163,9 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
                    double duration_s, const search::Budget& budget, const std::function<void(double)>& progress) {
   PacedRun result;
   Parts all(recording, Method::search, parts, settings, budget);
-  all.start();
   // The first images are there before the first cycle.
-  all.take(recording.joints(recording.period_of(0)), recording.views(0), -recording.period_s());
+  all.take(recording.joints(recording.period_of(0)), recording.seen(0, -recording.period_s()), -recording.period_s());
+  all.start();
   const auto periods = static_cast<std::int64_t>(std::llround(duration_s / recording.period_s()));
   result.periods.resize(static_cast<std::size_t>(periods));
   result.frame_s.reserve(recording.frames() + static_cast<std::size_t>(std::max(0.0, duration_s) * kFrameRate_hz));
@@ -180,8 +184,9 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
       PeriodTimes& times = result.periods[static_cast<std::size_t>(k)];
       const auto start = Clock::now();
       const double processor_s = lab::processor_time_s();
-      all.arm.set_period(k);
-      const bool done = all.loop.cycle(all.arm, static_cast<double>(k) * recording.period_s());
+      const double now_s = static_cast<double>(k) * recording.period_s();
+      all.arm.set_period(k, now_s);
+      const bool done = all.loop.cycle(all.port, now_s);
       times.processor_s = lab::processor_time_s() - processor_s;
       times.took_s = seconds(Clock::now() - start);
       times.late_s = seconds(start - time_of(k));
@@ -200,7 +205,7 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
     taking.store(true, std::memory_order_relaxed);
     const auto start = Clock::now();
     const double exposed_s = static_cast<double>(k) * recording.period_s();
-    const bool taken = all.timed.take(all.intake.frames(recording.views(*frame), exposed_s));
+    const bool taken = all.timed.take(all.intake.frames(recording.seen(*frame, exposed_s)));
     result.frame_s.push_back(seconds(Clock::now() - start));
     taking.store(false, std::memory_order_relaxed);
     result.failed_frames += taken ? 0 : 1;

@@ -128,7 +128,7 @@ TEST(Avoidance, AnArmThatDoesNotAvoidComesAndGoesOn) {
   RunSettings settings;
   settings.common = small_images();
   settings.duration_s = 4;
-  const auto vertices = loop_settings(Method::none, model, settings.common).task.vertices_world;
+  const auto vertices = hexagon(model).vertices_world;
   const Eigen::Vector3d lowest_world =
       *std::min_element(vertices.begin(), vertices.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   const RunResult run = run_avoidance(Method::none, model, standing_at(lowest_world), settings);
