@@ -22,6 +22,7 @@
 #include "depthgrid/control/approach_limit.hpp"
 #include "depthgrid/control/joint_box.hpp"
 #include "depthgrid/control/obstacle.hpp"
+#include "depthgrid/core/repulsion_law.hpp"
 
 namespace depthgrid::control {
 
@@ -29,10 +30,10 @@ enum class BodyLaw : std::uint8_t { risk, approach_speed, approach_row };
 
 struct BodySettings {
   BodyLaw law = BodyLaw::risk;
-  double rho_m = 0.4;       ///< where limits begin
-  double alpha = 6.0;       ///< steepness of the risk
-  double gain_per_s = 2.0;  ///< approach laws: allowed speed for each metre of distance beyond `stop_m`
-  double stop_m = 0.05;     ///< approach laws: nearer than this no approach is allowed
+  double rho_m = kDefaultRho;    ///< where limits begin
+  double alpha = kDefaultAlpha;  ///< steepness of the risk
+  double gain_per_s = 2.0;       ///< approach laws: allowed speed for each metre of distance beyond `stop_m`
+  double stop_m = 0.05;          ///< approach laws: nearer than this no approach is allowed
 };
 
 /// Throws Error with value and rule.

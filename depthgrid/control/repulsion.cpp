@@ -8,8 +8,6 @@
 namespace depthgrid::control {
 namespace {
 
-constexpr double kLargestAlpha = 100.0;
-
 /// Towards the obstacles; at most of length 1.
 Eigen::Vector3d direction_of(const Obstacle& obstacle, RepulsionForm form) noexcept {
   Eigen::Vector3d nearest = obstacle.direction_world.value_or(Eigen::Vector3d::Zero());
@@ -44,7 +42,7 @@ void validate(const RepulsionSettings& settings) {
 
 double risk(double distance_m, double rho_m, double alpha) noexcept {
   const double distance = distance_m > 0 ? distance_m : 0.0;
-  return distance < rho_m ? 1.0 / (1.0 + std::exp((2.0 * distance / rho_m - 1.0) * alpha)) : 0.0;
+  return distance < rho_m ? 1.0 / inverse_repulsion(distance, rho_m, alpha) : 0.0;
 }
 
 double risk(const Obstacle& obstacle, double rho_m, double alpha) noexcept {

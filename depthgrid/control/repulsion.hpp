@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "depthgrid/control/obstacle.hpp"
+#include "depthgrid/core/repulsion_law.hpp"
 
 namespace depthgrid::control {
 
@@ -24,9 +25,9 @@ enum class RepulsionForm : std::uint8_t {
 
 struct RepulsionSettings {
   RepulsionForm form = RepulsionForm::corrected;
-  double rho_m = 0.4;      ///< where it begins
-  double v_max_m_s = 1.5;  ///< V
-  double alpha = 6.0;      ///< steepness
+  double rho_m = kDefaultRho;    ///< where it begins
+  double v_max_m_s = 1.5;        ///< V
+  double alpha = kDefaultAlpha;  ///< steepness
 };
 
 /// Throws Error with value and rule.

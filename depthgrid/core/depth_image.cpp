@@ -5,6 +5,7 @@
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/rounding.hpp"
 
 namespace depthgrid {
 namespace {
@@ -34,17 +35,11 @@ void check_layout(std::size_t elements, std::size_t element_bytes, int width_px,
   }
 }
 
-/// A limit in single precision; beyond the largest float it is infinite.
-float limit_m(double value_m) noexcept {
-  return value_m > std::numeric_limits<float>::max() ? std::numeric_limits<float>::infinity()
-                                                     : static_cast<float>(value_m);
-}
-
 /// The rule with its limits in the pixels' precision.
 struct Decision {
   explicit Decision(const MeasurementRule& rule) noexcept
-      : near_m(limit_m(rule.near_m)),
-        far_m(limit_m(rule.far_m)),
+      : near_m(nearest_float(rule.near_m)),
+        far_m(nearest_float(rule.far_m)),
         beyond_far_m(rule.clamp_beyond_far ? far_m : 0.0F),
         invalid_units(rule.invalid_units) {}
 

@@ -18,6 +18,12 @@ enum class DepthFormat : std::uint8_t {
   float32_metres,  ///< float, metres
 };
 
+/// Bytes of one row without padding.
+[[nodiscard]] constexpr std::ptrdiff_t row_bytes(DepthFormat format, int width_px) noexcept {
+  return width_px *
+         static_cast<std::ptrdiff_t>(format == DepthFormat::uint16_units ? sizeof(std::uint16_t) : sizeof(float));
+}
+
 /// A depth image in somebody else's memory: never copied, never owned. The buffer must outlive the view
 /// and must not change while a call reads it. Depth is z (not range along the ray).
 struct DepthView {

@@ -105,6 +105,12 @@ Range touched(const Interval& px, int side_px) noexcept {
 
 }  // namespace
 
+bool distorts(const Distortion& distortion) noexcept {
+  const auto& c = distortion.coefficients;
+  return distortion.model != Distortion::Model::none &&
+         std::any_of(c.begin(), c.end(), [](double coefficient) { return coefficient != 0; });
+}
+
 Distortion make_distortion(Distortion::Model model, std::span<const double> coefficients) {
   constexpr std::array<const char*, 3> kNames{"none", "plumb_bob", "rational"};
   const char* name = kNames[static_cast<std::size_t>(model)];

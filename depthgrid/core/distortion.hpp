@@ -20,6 +20,9 @@ struct Distortion {
   std::array<double, 8> coefficients{};  ///< k1 k2 p1 p2 k3 k4 k5 k6; unused ones are 0
 };
 
+/// False also for a model whose coefficients are all 0, which calibration files may well name.
+[[nodiscard]] bool distorts(const Distortion& distortion) noexcept;
+
 /// Builds a distortion from the coefficients of a calibration file: none takes 0 (or only zeros), plumb_bob 4 or 5,
 /// rational 8. Throws Error on another count or a non-finite value.
 Distortion make_distortion(Distortion::Model model, std::span<const double> coefficients);

@@ -62,6 +62,18 @@ void validate(const Rig& rig) {
   }
 }
 
+Rig checked_rig(Rig rig, const char* reader) {
+  validate(rig);
+  for (RigCamera& camera : rig.cameras) {
+    if (distorts(camera.distortion)) {
+      fail(reader, ": camera '", camera.id,
+           "' has lens distortion, its images must be undistorted first and the rig given without distortion");
+    }
+    camera.T_world_camera = pose_from_matrix(camera.T_world_camera.matrix());
+  }
+  return rig;
+}
+
 std::vector<CameraMargins> camera_margins(const Rig& rig) {
   std::vector<CameraMargins> margins;
   for (const RigCamera& camera : rig.cameras) {

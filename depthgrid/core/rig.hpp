@@ -41,6 +41,11 @@ inline constexpr double kLargestTranslation = 1e5;
 /// kLargestTranslation.
 void validate(const Rig& rig);
 
+/// The rig for one that reads depth images and measures by it: valid, free of lens distortion (images must be
+/// undistorted first), and with exact rotations: one that is off by up to the tolerance would scale distances. Throws
+/// Error otherwise; `reader` begins the message about distortion.
+[[nodiscard]] Rig checked_rig(Rig rig, const char* reader);
+
 /// The margins of all cameras, in the rig's order. Throws Error that names a camera without.
 std::vector<CameraMargins> camera_margins(const Rig& rig);
 

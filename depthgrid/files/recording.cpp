@@ -43,13 +43,6 @@ RigFile select(RigFile all, const std::vector<std::string>& ids, const std::stri
   return chosen;
 }
 
-/// A calibration file may well name a model and give zeros: nothing to remove then, and no copy to make.
-bool distorts(const Distortion& distortion) noexcept {
-  return distortion.model != Distortion::Model::none &&
-         std::any_of(distortion.coefficients.begin(), distortion.coefficients.end(),
-                     [](double coefficient) { return coefficient != 0; });
-}
-
 }  // namespace
 
 Recording::Recording(const std::filesystem::path& path, const RecordingOptions& options) {

@@ -23,7 +23,7 @@ void validate(const EvaluationSettings& settings) {
     fail("evaluation settings: rho is ", settings.rho_m, " m, must be a positive finite number");
   }
   within("direction_blend", settings.direction_blend, 0, 1);
-  within("repulsion_alpha", settings.repulsion_alpha, 0, 100);
+  within("repulsion_alpha", settings.repulsion_alpha, 0, kLargestAlpha);
   if (!(settings.max_frame_age_s >= 0)) {
     fail("evaluation settings: max_frame_age is ", settings.max_frame_age_s, " s, must not be negative");
   }
@@ -33,9 +33,7 @@ void validate(const EvaluationSettings& settings) {
 
 namespace {
 
-/// The rig with exact rotations: a pose that is off by up to the tolerance would scale distances.
-Rig checked(Rig rig, std::size_t principal) {
-  validate(rig);
+Rig checked(const Rig& rig, std::size_t principal) {
   if (principal >= rig.cameras.size()) {
     fail("grid evaluator: principal camera is ", principal, ", the rig has ", rig.cameras.size(), " cameras");
   }
@@ -43,16 +41,7 @@ Rig checked(Rig rig, std::size_t principal) {
     fail("grid evaluator: the rig has ", rig.cameras.size(), " cameras, at most ", kMostSecondaries + 1,
          " are supported");
   }
-  for (RigCamera& camera : rig.cameras) {
-    const auto& c = camera.distortion.coefficients;
-    if (camera.distortion.model != Distortion::Model::none &&
-        std::any_of(c.begin(), c.end(), [](double value) { return value != 0; })) {
-      fail("grid evaluator: camera '", camera.id,
-           "' has lens distortion, its images must be undistorted first and the rig given without distortion");
-    }
-    camera.T_world_camera = pose_from_matrix(camera.T_world_camera.matrix());
-  }
-  return rig;
+  return checked_rig(rig, "grid evaluator");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/proximity.hpp"
+#include "depthgrid/core/repulsion_law.hpp"
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/grid/depth_grid.hpp"
 #include "depthgrid/grid/depth_grid_map.hpp"
@@ -43,11 +44,12 @@ struct EvaluationSettings {
   Window window = Window::region_of_surveillance;
   Collect collect = Collect::minimum;
   OutsideSpace outside = OutsideSpace::ignored;
-  double rho_m = 0.4;            ///< surveillance radius
-  SensorMargin sensor;           ///< corrected only; one for all cameras: take the worst
-  PoseMargin pose;               ///< corrected only; one for all cameras: take the worst
-  double direction_blend = 0.5;  ///< b in [0, 1]: weight of the other obstacles in corrected's hybrid direction
-  double repulsion_alpha = 6.0;  ///< shape of the repulsion that weights them
+  double rho_m = kDefaultRho;  ///< surveillance radius
+  SensorMargin sensor;         ///< corrected only; one for all cameras: take the worst
+  PoseMargin pose;             ///< corrected only; one for all cameras: take the worst
+  double direction_blend =
+      kDefaultBlend;  ///< b in [0, 1]: weight of the other obstacles in corrected's hybrid direction
+  double repulsion_alpha = kDefaultAlpha;  ///< shape of the repulsion that weights them
   double max_frame_age_s =
       1e9;  ///< a frame older than the newest by more than this, or without a
             ///< finite time, makes answers stale; all cameras frozen together is for the caller to see

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depthgrid/core/usable_frame.hpp"
+
 namespace depthgrid::grid {
 
 Observation::Observation(const RigCamera& camera, const SensorMargin* margins)
-    : rule_(camera.rule),
-      metres_per_unit_(camera.metres_per_unit),
+    : camera_(camera),
       with_free_depth_(margins != nullptr),
       measured_m_(camera.intrinsics.width_px, camera.intrinsics.height_px),
       removed_m_(camera.intrinsics.width_px, camera.intrinsics.height_px),
@@ -16,36 +17,14 @@ Observation::Observation(const RigCamera& camera, const SensorMargin* margins)
       free_(with_free_depth_ ? camera.intrinsics.width_px : 1, with_free_depth_ ? camera.intrinsics.height_px : 1,
             margins != nullptr ? *margins : SensorMargin{}) {}
 
-bool Observation::is_usable(const Frame& frame) const noexcept {
-  const DepthView& depth = frame.depth;
-  const RobotView& robot = frame.robot;
-  const bool units = depth.format == DepthFormat::uint16_units;
-  const std::ptrdiff_t row_bytes =
-      depth.width_px * static_cast<std::ptrdiff_t>(units ? sizeof(std::uint16_t) : sizeof(float));
-  return depth.data != nullptr && depth.width_px == measured_m_.width_px() &&
-         depth.height_px == measured_m_.height_px() &&
-         (depth.stride_bytes == 0 || std::abs(depth.stride_bytes) >= row_bytes) &&
-         (!units || depth.metres_per_unit == metres_per_unit_) &&
-         (robot.near_m == nullptr) == (robot.far_m == nullptr) &&
-         (robot.near_m == nullptr || robot.stride_px == 0 || std::abs(robot.stride_px) >= depth.width_px);
-}
-
 bool Observation::update(const Frame& frame) noexcept {
-  present_ = is_usable(frame);
+  present_ = why_unusable(frame, camera_) == nullptr;
   RobotView robot;
   if (present_) {
-    DepthView depth = frame.depth;
-    if (depth.stride_bytes == 0) {
-      depth.stride_bytes =
-          depth.width_px * static_cast<std::ptrdiff_t>(depth.format == DepthFormat::uint16_units ? sizeof(std::uint16_t)
-                                                                                                 : sizeof(float));
-    }
-    normalise(depth, rule_, measured_m_);
-    time_s_ = frame.time_s;
-    robot = frame.robot;
-    if (robot.stride_px == 0) {
-      robot.stride_px = depth.width_px;
-    }
+    const Frame read = with_strides(frame);
+    normalise(read.depth, camera_.rule, measured_m_);
+    time_s_ = read.time_s;
+    robot = read.robot;
   } else {
     std::fill_n(measured_m_.data(), is_robot_.size(), 0.0F);
   }

@@ -17,8 +17,7 @@ class Observation {
   /// With `margins` the free depth g is prepared as well (corrected); without, only what the letter reads.
   Observation(const RigCamera& camera, const SensorMargin* margins);
 
-  /// Takes a frame. False when it is unusable: no data, another size or depth scale than the camera, rows that overlap,
-  /// or half a robot view. Then nothing is measured anywhere.
+  /// Takes a frame. False when it is unusable; then nothing is measured anywhere.
   bool update(const Frame& frame) noexcept;
 
   /// Measured depth, 0 = no measurement.
@@ -37,10 +36,7 @@ class Observation {
  private:
   void remove_robot(const RobotView& robot) noexcept;
 
-  [[nodiscard]] bool is_usable(const Frame& frame) const noexcept;
-
-  MeasurementRule rule_;
-  double metres_per_unit_;
+  RigCamera camera_;
   bool with_free_depth_;
   DepthImage measured_m_;
   DepthImage removed_m_;

@@ -14,10 +14,7 @@ Eigen::Vector3d ObstacleSet::led_direction(double b) const noexcept {
   if (!(weight_sum_ > 0)) {
     return n;
   }
-  const Eigen::Vector3d mean = direction_sum_ / weight_sum_;
-  const Eigen::Vector3d led = n + b * (mean - mean.dot(n) * n);
-  const double length = led.norm();
-  return length > 0 ? (led / length).eval() : n;
+  return depthgrid::led_direction(n, direction_sum_ / weight_sum_, b);
 }
 
 }  // namespace depthgrid::grid

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <cstdint>
 
 #include "depthgrid/core/pixel_frustum.hpp"
+#include "depthgrid/core/repulsion_law.hpp"
 
 namespace depthgrid::grid {
 
@@ -18,7 +18,7 @@ struct ControlPoint {
 /// Obstacle points within rho, one per principal pixel at most.
 class ObstacleSet {
  public:
-  /// `repulsion_alpha` shapes the weight 1 / (1 + exp((2 D / rho - 1) alpha)) of each direction.
+  /// `repulsion_alpha` shapes the weight of each direction.
   ObstacleSet(double rho_m, double repulsion_alpha) noexcept
       : rho_m_(rho_m), nearest_m_(rho_m), alpha_(repulsion_alpha) {}
 
@@ -42,7 +42,7 @@ class ObstacleSet {
   /// Adds the unit vector weighted by the repulsion at its distance.
   void add_weighted_direction(const NearestPoint& obstacle) noexcept {
     if (obstacle.distance_m < rho_m_) {
-      const double weight = 1.0 / (1.0 + std::exp((2.0 * obstacle.distance_m / rho_m_ - 1.0) * alpha_));
+      const double weight = 1.0 / inverse_repulsion(obstacle.distance_m, rho_m_, alpha_);
       direction_sum_ += weight * obstacle.direction_camera;
       weight_sum_ += weight;
       ++count_;
@@ -60,8 +60,7 @@ class ObstacleSet {
   /// Equation (11) as printed: the mean of the unit vectors, not normalised. Zero when there is none.
   [[nodiscard]] Eigen::Vector3d mean_direction() const noexcept;
 
-  /// The nearest direction decides and the others turn it by at most 45 degrees:
-  /// V = n + b (m - (m.n) n), normalised, with n towards the nearest, m the weighted mean and b in [0, 1].
+  /// The direction that the nearest leads, with the weighted mean of the others.
   [[nodiscard]] Eigen::Vector3d led_direction(double b) const noexcept;
 
  private:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/usable_frame.hpp"
 
 namespace depthgrid::robot {
 
@@ -163,10 +164,10 @@ RobotView RobotRemoval::find(std::span<const Pose> T_world_link, const Pose& T_w
   if ((!motion_m.empty() && motion_m.size() != capsules_.size()) || !take(T_world_link, T_world_camera, motion_m)) {
     return {};
   }
-  const bool readable = reading != nullptr && reading->data != nullptr && reading->width_px == camera_.width_px &&
-                        reading->height_px == camera_.height_px;
+  const bool readable = reading != nullptr && why_unusable(*reading, camera_) == nullptr;
+  const DepthView image = readable ? with_stride(*reading) : DepthView{};
   for (int v = 0; v < camera_.height_px; ++v) {
-    write(v, readable ? reading : nullptr);
+    write(v, readable ? &image : nullptr);
   }
   return {near_m_.data(), far_m_.data(), stride_px_};
 }

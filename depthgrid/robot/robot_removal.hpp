@@ -42,7 +42,8 @@ class RobotRemoval {
   /// smallest positive float.
   ///
   /// The view points into this object: it is good until the next call. It has no robot (near_m null, so that the robot
-  /// is its own obstacle) when a size is wrong or a number is not finite. A reading of the wrong size is not used.
+  /// is its own obstacle) when a size is wrong or a number is not finite. A reading of
+  /// the wrong size, or whose rows overlap, is not used.
   [[nodiscard]] RobotView find(std::span<const Pose> T_world_link, const Pose& T_world_camera,
                                std::span<const double> motion_m = {}, const DepthView* reading = nullptr) noexcept;
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "depthgrid/core/rounding.hpp"
 #include "depthgrid/search/ball_test.hpp"
 #include "depthgrid/search/blocking_point.hpp"
 
@@ -17,9 +18,6 @@ constexpr double kBorderResolution = 0.5e-3;
 constexpr double kSharedExtent = 4.0;
 /// Of the cameras' reach with range, as far as leaves follow it.
 constexpr double kLargestRate = 3.2;
-
-float float_below(double value) noexcept { return std::nextafter(static_cast<float>(value), -1e30F); }
-float float_above(double value) noexcept { return std::nextafter(static_cast<float>(value), 1e30F); }
 
 }  // namespace
 

@@ -40,7 +40,7 @@ class Descent {
   [[nodiscard]] const Nearest& nearest_of(std::size_t i) const noexcept { return found_[i]; }
 
   /// Mean of the unit vectors from the axis to all obstacle space within rho of the primitive's surface, weighted by
-  /// volume and by the repulsion v(D) = 1 / (1 + exp((2 D / rho - 1) alpha)). Cubes are split until their side is about
+  /// volume and by the repulsion v(D). Cubes are split until their side is about
   /// a third of their distance or 1/16 of rho, and count as their centre does. For all primitives of the group for
   /// which `wanted` has its bit; zero where there is no such space.
   void find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means, Allowance& allowance) noexcept;

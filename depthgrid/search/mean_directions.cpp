@@ -31,9 +31,8 @@ std::uint32_t Descent::add_piece(const Cube& cube, std::span<Eigen::Vector3d> me
     fine |= 1U << i;
     const double distance_m = pair.distance_m - axes_[i].radius_m;
     if (counts && distance_m < settings_.rho_m && pair.distance_m > 0) {
-      const double weight =
-          (box.high - box.low).prod() /
-          (1 + std::exp((2 * std::max(distance_m, 0.0) / settings_.rho_m - 1) * settings_.repulsion_alpha));
+      const double weight = (box.high - box.low).prod() /
+                            inverse_repulsion(std::max(distance_m, 0.0), settings_.rho_m, settings_.repulsion_alpha);
       means[i] += weight / pair.distance_m * (centre - pair.on_axis);
       total[i] += weight;
     }

@@ -142,14 +142,12 @@ void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan>
   if (!with_direction || wanted == 0) {
     return;
   }
-  // V = n + b (t - (t.n) n), normalised: the nearest direction leads, the others only turn it.
   descent.find_mean_directions(wanted, means, allowance);
   for (std::size_t i = 0; i < group_plans.size(); ++i) {
     if (((wanted >> i) & 1U) != 0) {
       Answer& result = answers[group_plans[i].answer];
-      const Eigen::Vector3d& n = result.nearest.direction_world;
-      const Eigen::Vector3d& t = means[i];
-      result.hybrid_direction_world = (n + snapshot.settings().direction_blend * (t - t.dot(n) * n)).normalized();
+      result.hybrid_direction_world =
+          led_direction(result.nearest.direction_world, means[i], snapshot.settings().direction_blend);
     }
   }
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "depthgrid/views/rounding.hpp"
+#include "depthgrid/core/rounding.hpp"
 
 namespace depthgrid::views {
 namespace {
@@ -24,11 +24,6 @@ Reduction make_reduction(const SensorMargin& margin, double metres_per_value) no
           rounded_up(metres_per_value * metres_per_value * margin.quadratic_per_m), rounded_up(margin.constant_m)};
 }
 
-/// A limit in single precision; beyond the largest float it is infinite.
-float limit_m(double value_m) noexcept {
-  return value_m > static_cast<double>(kLargest) ? std::numeric_limits<float>::infinity() : static_cast<float>(value_m);
-}
-
 /// As the vector code has it.
 float reduced(const Reduction& r, float x) noexcept {
   const float result_m = x * (r.slope - x * r.curve) - r.constant_m;
@@ -41,9 +36,10 @@ Reading::Reading(const MeasurementRule& rule, double metres_per_unit_in, const S
     : metres_per_unit(metres_per_unit_in),
       invalid_units(rule.invalid_units),
       of_units(make_reduction(margin, metres_per_unit)),
-      lowest_m(std::max(limit_m(rule.near_m), std::numeric_limits<float>::denorm_min())),
-      highest_m(std::min(limit_m(rule.far_m), kLargest)),
-      beyond_highest_m(rule.clamp_beyond_far && limit_m(rule.far_m) <= kLargest ? limit_m(rule.far_m) : 0.0F),
+      lowest_m(std::max(nearest_float(rule.near_m), std::numeric_limits<float>::denorm_min())),
+      highest_m(std::min(nearest_float(rule.far_m), kLargest)),
+      beyond_highest_m(rule.clamp_beyond_far && nearest_float(rule.far_m) <= kLargest ? nearest_float(rule.far_m)
+                                                                                      : 0.0F),
       of_metres(make_reduction(margin, 1.0)) {
   // Ask the one place that decides, value by value.
   MeasurementRule without_list = rule;

@@ -14,7 +14,6 @@ constexpr const char* kName = "search settings: ";
 constexpr double kLargestRho = 100.0;
 /// Below this the cubes of the octree would shrink towards the rounding of single precision.
 constexpr double kSmallestResolution = 0.0005;
-constexpr double kLargestAlpha = 100.0;
 
 void check_within(const char* what, double value, double low, double high, const char* unit) {
   if (!(value >= low && value <= high)) {
@@ -73,13 +72,6 @@ void check_policies(const Policies& policies) {
   }
 }
 
-void check_margins(const CameraMargins& margins, const std::string& name) {
-  validate(margins.sensor, name.c_str());
-  validate(PoseMargin{margins.translation_m, margins.rotation_rad, 0}, name.c_str());
-  check_not_negative(name + ": half exposure", margins.half_exposure_s, " s");
-  check_not_negative(name + ": time uncertainty", margins.time_uncertainty_s, " s");
-}
-
 }  // namespace
 
 void validate(const Settings& settings, const Rig& rig) {
@@ -99,7 +91,7 @@ void validate(const Settings& settings, const Rig& rig) {
          rig.cameras.size());
   }
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
-    check_margins(settings.margins[k], kName + ("camera '" + rig.cameras[k].id + "'"));
+    depthgrid::validate(settings.margins[k], (kName + ("camera '" + rig.cameras[k].id + "'")).c_str());
   }
   if (!(settings.rho_m > 0 && settings.rho_m <= kLargestRho)) {
     fail(kName, "rho is ", settings.rho_m, " m, must be greater than 0 and at most ", kLargestRho, " m");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "depthgrid/core/margin.hpp"
+#include "depthgrid/core/repulsion_law.hpp"
 #include "depthgrid/core/rig.hpp"
 
 namespace depthgrid::views {
@@ -49,14 +50,14 @@ struct Settings {
   std::variant<std::monostate, FrustumSpace, BoxSpace> space;  ///< W; has to be set
   Policies policies;
   std::vector<CameraMargins> margins;  ///< one a camera, in the rig's order
-  double rho_m = 0.4;                  ///< surveillance radius, from the primitive's surface
+  double rho_m = kDefaultRho;          ///< surveillance radius, from the primitive's surface
   double resolution_m = 0.005;         ///< tightness: the nearest point lies within this (and e_k) of every N_k
   /// Fastest obstacle. Enters e_k = translation + rotation |x - c_k| + v_max (|t_k - t_ref| + half exposure + time
   /// uncertainty). With 0 a time skew between cameras is not covered.
   double v_max_m_s = std::numeric_limits<double>::quiet_NaN();       ///< has to be set
   double max_frame_age_s = std::numeric_limits<double>::infinity();  ///< older than the newest by more: stale
-  double direction_blend = 0.5;  ///< b in [0, 1] of the hybrid direction: weight of the other obstacles
-  double repulsion_alpha = 6.0;  ///< shape of the repulsion that weights them
+  double direction_blend = kDefaultBlend;  ///< b in [0, 1] of the hybrid direction: weight of the other obstacles
+  double repulsion_alpha = kDefaultAlpha;  ///< shape of the repulsion that weights them
 };
 
 /// Throws Error with value, rule and hint unless every part is set and in range for this rig.

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "depthgrid/core/rounding.hpp"
+#include "depthgrid/core/usable_frame.hpp"
 #include "depthgrid/views/image_preparation.hpp"
 #include "depthgrid/views/pyramid_rows.hpp"
 #include "depthgrid/views/reading.hpp"
-#include "depthgrid/views/rounding.hpp"
 
 namespace depthgrid::views {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 std::size_t pixel_count(const DepthImage& image) noexcept { return image.index(0, image.height_px()); }
-
-std::ptrdiff_t row_bytes(DepthFormat format, int width_px) noexcept {
-  return width_px *
-         static_cast<std::ptrdiff_t>(format == DepthFormat::uint16_units ? sizeof(std::uint16_t) : sizeof(float));
-}
 
 float pocket_m(const Policies& policies) noexcept {
   return policies.robot_pockets == Policy::ignored ? rounded_down(policies.ignored_pocket_m) : 0.0F;
@@ -43,8 +39,8 @@ std::vector<PyramidLevel> pyramid_levels(int width_px, int height_px, std::size_
 
 /// What only update() needs.
 struct View::Preparation {
-  Preparation(const RigCamera& camera, const CameraMargins& margins, const Policies& policies)
-      : rule(camera.rule),
+  Preparation(const RigCamera& camera_in, const CameraMargins& margins, const Policies& policies)
+      : camera(camera_in),
         reading(camera.rule, camera.metres_per_unit, margins.sensor),
         reach_px(margins.sensor.lateral_px),
         pocket(pocket_m(policies)),
@@ -52,7 +48,7 @@ struct View::Preparation {
         rows(camera.intrinsics.width_px, camera.intrinsics.height_px, reach_px),
         island_columns(static_cast<std::size_t>(camera.intrinsics.height_px)) {}
 
-  MeasurementRule rule;
+  RigCamera camera;
   Reading reading;
   int reach_px;
   float pocket;
@@ -96,31 +92,11 @@ float View::measured_m(int u, int v) const noexcept {
                        height_px(),
                        row_bytes(kept_format_, width_px()),
                        preparation_->reading.metres_per_unit};
-  return measured_depth_m(kept, preparation_->rule, u, v).value_or(0.0F);
+  return measured_depth_m(kept, preparation_->camera.rule, u, v).value_or(0.0F);
 }
 
 const char* View::why_unusable(const Frame& frame) const noexcept {
-  const DepthView& depth = frame.depth;
-  const RobotView& robot = frame.robot;
-  if (depth.data == nullptr) {
-    return "there is no depth image";
-  }
-  if (depth.width_px != width_px() || depth.height_px != height_px()) {
-    return "the depth image has another size than the camera's intrinsics";
-  }
-  if (depth.stride_bytes != 0 && std::abs(depth.stride_bytes) < row_bytes(depth.format, depth.width_px)) {
-    return "the depth image's rows overlap: the stride is less than a row";
-  }
-  if (depth.format == DepthFormat::uint16_units && depth.metres_per_unit != preparation_->reading.metres_per_unit) {
-    return "the depth image has another scale than the camera's metres_per_unit";
-  }
-  if ((robot.near_m == nullptr) != (robot.far_m == nullptr)) {
-    return "the robot view has only one of near_m and far_m";
-  }
-  if (robot.near_m != nullptr && robot.stride_px != 0 && std::abs(robot.stride_px) < depth.width_px) {
-    return "the robot view's rows overlap: the stride is less than a row";
-  }
-  return nullptr;
+  return depthgrid::why_unusable(frame, preparation_->camera);
 }
 
 void View::clear() noexcept {
@@ -165,13 +141,8 @@ bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
     return false;
   }
   Preparation& p = *preparation_;
-  NewImage image{frame.depth, frame.robot, p.reach_px, p.pocket, p.blind_m};
-  if (image.depth.stride_bytes == 0) {
-    image.depth.stride_bytes = row_bytes(image.depth.format, width_px());
-  }
-  if (image.robot.stride_px == 0) {
-    image.robot.stride_px = width_px();
-  }
+  const Frame read = with_strides(frame);
+  const NewImage image{read.depth, read.robot, p.reach_px, p.pocket, p.blind_m};
   if (image.robot.near_m != nullptr) {
     clear_islands();
   }

@@ -40,21 +40,6 @@ bool is_valid(const Pose& pose) noexcept {
          rotation.determinant() > 0 && pose.translation().cwiseAbs().maxCoeff() <= kLargestTranslation;
 }
 
-/// The rig with exact rotations: one that is off by up to the tolerance would scale distances.
-Rig checked(Rig rig) {
-  validate(rig);
-  for (RigCamera& camera : rig.cameras) {
-    const auto& c = camera.distortion.coefficients;
-    if (camera.distortion.model != Distortion::Model::none &&
-        std::any_of(c.begin(), c.end(), [](double value) { return value != 0; })) {
-      fail("view store: camera '", camera.id,
-           "' has lens distortion, its images must be undistorted first and the rig given without distortion");
-    }
-    camera.T_world_camera = pose_from_matrix(camera.T_world_camera.matrix());
-  }
-  return rig;
-}
-
 }  // namespace
 
 // How snapshots stay whole while images arrive.
@@ -82,7 +67,7 @@ struct ViewStore::State {
   };
 
   State(const Rig& rig_in, Settings settings_in, int held_snapshots)
-      : rig(checked(rig_in)), settings(std::move(settings_in)), cameras(rig.cameras.size()) {
+      : rig(checked_rig(rig_in, "view store")), settings(std::move(settings_in)), cameras(rig.cameras.size()) {
     views::validate(settings, rig);
     if (held_snapshots < 1 || held_snapshots > kMostHeld) {
       fail("view store: held_snapshots is ", held_snapshots, ", must be between 1 and ", kMostHeld);
