@@ -136,8 +136,8 @@ bool scan_pixels(const LocalCamera& camera, const ScannedBall& ball, const Windo
   measure(ball.x_m, ball.z_m, ball.radius_m, camera.fx, camera.cx, first, 1, count, across);
   measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, window.v0, 1, rows, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
-  const float* const island_near_m = camera.has_islands ? camera.view->island_near_m().data() : nullptr;
-  const float* const island_far_m = camera.has_islands ? camera.view->island_far_m().data() : nullptr;
+  const float* const island_near_m = camera.has_islands ? camera.image->island_near_m.data() : nullptr;
+  const float* const island_far_m = camera.has_islands ? camera.image->island_far_m.data() : nullptr;
   for (int v = window.v0; v <= window.v1; ++v) {
     const auto row = static_cast<std::size_t>(v - window.v0);
     const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(v) * camera.width_px + first;
@@ -177,8 +177,8 @@ bool scan_blocks(const LocalCamera& camera, const ScannedBall& ball, int level, 
     const auto row = static_cast<std::size_t>(j - j0);
     const std::ptrdiff_t start = texels.offset + static_cast<std::ptrdiff_t>(4) * j * texels.width;
     const Depths depths{camera.minima_m + start,
-                        camera.has_islands ? camera.view->island_near_maxima_m() + start : nullptr,
-                        camera.has_islands ? camera.view->island_far_minima_m() + start : nullptr};
+                        camera.has_islands ? camera.image->island_near_maxima_m.data() + start : nullptr,
+                        camera.has_islands ? camera.image->island_far_minima_m.data() + start : nullptr};
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
       const I block = hn::Min(hn::Iota(di, i0 + i), hn::Set(di, last));
       const M met = may_meet<true>(across, static_cast<std::size_t>(i), down, row, square_radius, depths,

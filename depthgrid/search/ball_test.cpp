@@ -40,15 +40,15 @@ struct Ball {
 
   /// The two parts of a pixel's frustum that are not free, each less the robot's island.
   [[nodiscard]] bool meets_pixel(int u, int v) const noexcept {
-    const views::View& view = *camera.view;
-    const auto free_m = static_cast<double>(view.free_m().at(u, v));
+    const views::PreparedImage& image = *camera.image;
+    const auto free_m = static_cast<double>(image.free_m.at(u, v));
     const double start_m = free_m > camera.near_m ? free_m : camera.near_m;
     const Window pixel{u, v, u, v};
     if (!camera.has_islands) {
       return meets(pixel, start_m, kInfinity) || (camera.near_m > 0 && meets(pixel, 0, camera.near_m));
     }
-    const auto near_m = static_cast<double>(view.island_near_m().at(u, v));
-    const auto far_m = static_cast<double>(view.island_far_m().at(u, v));
+    const auto near_m = static_cast<double>(image.island_near_m.at(u, v));
+    const auto far_m = static_cast<double>(image.island_far_m.at(u, v));
     if (!(near_m <= far_m)) {
       return meets(pixel, start_m, kInfinity) || (camera.near_m > 0 && meets(pixel, 0, camera.near_m));
     }
@@ -90,12 +90,12 @@ struct Ball {
       const views::PyramidLevel& texels = camera.levels[level - 2];
       return static_cast<double>(camera.minima_m[texels.offset + 4 * j * texels.width + 4 * i]);
     }
-    const int last_u = camera.view->width_px() - 1;
-    const int last_v = camera.view->height_px() - 1;
+    const int last_u = camera.pinhole.width_px - 1;
+    const int last_v = camera.pinhole.height_px - 1;
     float smallest_m = std::numeric_limits<float>::infinity();
     for (int v = 2 * j; v <= std::min(2 * j + 1, last_v); ++v) {
       for (int u = 2 * i; u <= std::min(2 * i + 1, last_u); ++u) {
-        smallest_m = std::min(smallest_m, camera.view->free_m().at(u, v));
+        smallest_m = std::min(smallest_m, camera.image->free_m.at(u, v));
       }
     }
     return static_cast<double>(smallest_m);

@@ -20,8 +20,8 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   const auto u = static_cast<int>(at.x_px);
   const auto v = static_cast<int>(at.y_px);
   const auto is_robot = [&](int i, int j, double z_m) {
-    return camera.has_islands && z_m >= static_cast<double>(camera.view->island_near_m().at(i, j)) &&
-           z_m <= static_cast<double>(camera.view->island_far_m().at(i, j));
+    return camera.has_islands && z_m >= static_cast<double>(camera.image->island_near_m.at(i, j)) &&
+           z_m <= static_cast<double>(camera.image->island_far_m.at(i, j));
   };
   if (!(x.z() > camera.near_m)) {
     return !is_robot(u, v, x.z());
@@ -41,7 +41,7 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
     const double square = 1 / (1 + t * t);
     const double rest = slack * slack - side_m * side_m * square;
     const double z_m = x.z() + std::max(0.0, std::sqrt(square * rest) - side_m * t * square);
-    const auto free_m = static_cast<double>(camera.view->free_m().at(i, j));
+    const auto free_m = static_cast<double>(camera.image->free_m.at(i, j));
     if (z_m < free_m) {
       return false;
     }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "depthgrid/search/search.hpp"
+#include "depthgrid/views/prepared_image.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -34,16 +35,17 @@ struct PixelWindow {
 /// One camera, and a point in its frame that it looks at.
 struct Sight {
   const views::View& view;
+  const views::PreparedImage& image;
   const SensorMargin& margin;
   const PinholeCamera& pinhole;
   Eigen::Vector3d p;
   double slack_m;  ///< resolution and reach
 
-  [[nodiscard]] PixelWindow image() const noexcept { return {0, 0, view.width_px() - 1, view.height_px() - 1}; }
+  [[nodiscard]] PixelWindow whole() const noexcept { return {0, 0, pinhole.width_px - 1, pinhole.height_px - 1}; }
 
   /// What the readings in these pixels say, added to what is known. The window may leave the image.
   void read(const PixelWindow& pixels, Look& known) const noexcept {
-    const PixelWindow inside = pixels.clipped_to(image());
+    const PixelWindow inside = pixels.clipped_to(whole());
     known.unmeasured = known.unmeasured || inside.u0 > pixels.u0 || inside.v0 > pixels.v0 || inside.u1 < pixels.u1 ||
                        inside.v1 < pixels.v1;
     for (int v = inside.v0; v <= inside.v1; ++v) {
@@ -64,11 +66,11 @@ struct Sight {
   /// pyramid says which blocks have none. Stops at a measured one, which nothing outranks.
   void read_block(std::size_t level, int i, int j, const PixelWindow& window, int& pixels_left,
                   Look& known) const noexcept {
-    const views::PyramidLevel& texels = view.levels()[level];
+    const views::PyramidLevel& texels = image.levels[level];
     const auto texel =
         static_cast<std::size_t>(4 * j) * static_cast<std::size_t>(texels.width) + static_cast<std::size_t>(4 * i);
     if (known.measured || pixels_left <= 0 ||
-        static_cast<double>(view.minima_m()[texels.offset + texel]) > p.z() + slack_m) {
+        static_cast<double>(image.minima_m[texels.offset + texel]) > p.z() + slack_m) {
       return;
     }
     if (level == 0) {
@@ -112,10 +114,10 @@ Look look_around(const Sight& sight, double near_m) noexcept {
     return result;
   }
   const PixelWindow window = pixel_window(sight.pinhole, sight.p, sight.slack_m);
-  const PixelWindow inside = window.clipped_to(sight.image());
+  const PixelWindow inside = window.clipped_to(sight.whole());
   result.unmeasured = inside.u0 > window.u0 || inside.v0 > window.v0 || inside.u1 < window.u1 || inside.v1 < window.v1;
   std::size_t level = 0;
-  while (level + 1 < sight.view.levels().size() &&
+  while (level + 1 < sight.image.levels.size() &&
          std::max(inside.u1 - inside.u0, inside.v1 - inside.v0) >= 16 << level) {
     ++level;
   }
@@ -152,7 +154,8 @@ Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& 
     const double range_m = x.norm();
     const double slack_m =
         snapshot.settings().resolution_m + e.translation_m + e.time_m + e.rotation_rad * range_m + kRounding;
-    const Sight sight{view, snapshot.settings().margins[k].sensor, camera.intrinsics, x, slack_m};
+    const Sight sight{view,   views::prepared(view), snapshot.settings().margins[k].sensor, camera.intrinsics, x,
+                      slack_m};
     const auto u = static_cast<int>(p.x_px);
     const auto v = static_cast<int>(p.y_px);
     Look seen;

@@ -13,9 +13,9 @@ bool may_have_islands(const LocalCamera& camera, float u_low, float u_high, floa
   }
   const auto pixel = [](float at, float size) { return static_cast<int>(std::clamp(at, 0.0F, size - 1)); };
   const views::PixelRange columns{pixel(u_low, camera.width), pixel(u_high, camera.width) + 1};
-  const int last = pixel(v_high, camera.height) / views::View::kBandRows;
-  for (int band = pixel(v_low, camera.height) / views::View::kBandRows; band <= last; ++band) {
-    if (!views::common(columns, camera.island_bands[band]).empty()) {
+  const int last = pixel(v_high, camera.height) / views::PreparedImage::kBandRows;
+  for (int band = pixel(v_low, camera.height) / views::PreparedImage::kBandRows; band <= last; ++band) {
+    if (!views::common(columns, camera.image->island_bands[static_cast<std::size_t>(band)]).empty()) {
       return true;
     }
   }

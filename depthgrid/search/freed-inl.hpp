@@ -79,7 +79,7 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
                                    V z_high) {
   const Floats d;
   const Ints di;
-  const views::View& view = *camera.view;
+  const views::PreparedImage& image = *camera.image;
   const M near_blind = hn::Le(z_low, hn::Set(d, camera.blind_m));
   const I width = hn::Set(di, camera.width_px);
   for (int j = 0; j < side; ++j) {
@@ -90,8 +90,8 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
       if (hn::AllFalse(d, shadowed)) {
         continue;
       }
-      const V near_m = hn::GatherIndex(d, view.island_near_m().data(), pixel);
-      const V far_m = hn::GatherIndex(d, view.island_far_m().data(), pixel);
+      const V near_m = hn::GatherIndex(d, image.island_near_m.data(), pixel);
+      const V far_m = hn::GatherIndex(d, image.island_far_m.data(), pixel);
       left = hn::AndNot(hn::And(shadowed, hn::Or(hn::Lt(z_low, near_m), hn::Gt(z_high, far_m))), left);
       if (hn::AllFalse(d, left)) {
         return left;
@@ -104,14 +104,14 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
 /// Lanes of `left` that lie in islands in every texel.
 HWY_INLINE M island_texels(const LocalCamera& camera, M left, const Footprint& at, V z_low, V z_high) {
   const Floats d;
-  const views::View& view = *camera.view;
+  const views::PreparedImage& image = *camera.image;
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
-  left = hn::And(left, hn::Ge(z_low, extremum(camera, at, view.island_near_maxima_m(), max)));
+  left = hn::And(left, hn::Ge(z_low, extremum(camera, at, image.island_near_maxima_m.data(), max)));
   if (hn::AllFalse(d, left)) {
     return left;
   }
-  return hn::And(left, hn::Le(z_high, extremum(camera, at, view.island_far_minima_m(), min)));
+  return hn::And(left, hn::Le(z_high, extremum(camera, at, image.island_far_minima_m.data(), min)));
 }
 
 /// Lanes of `asked` that the camera frees: seen free, or robot. Their rectangles lie in the image.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "depthgrid/core/camera.hpp"
+#include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
@@ -47,7 +48,6 @@ struct LocalCamera {
   std::array<Texels, kMostTexels> texels{};
   const views::PyramidLevel* levels = nullptr;
   int level_count = 0;
-  const views::PixelRange* island_bands = nullptr;  ///< as of the view
   int width_px = 0;
   bool has_reach = false;
   bool has_islands = false;
@@ -63,7 +63,7 @@ struct LocalCamera {
   PinholeCamera pinhole;
   double near_m = 0;
   PoseMargin pose_margin;
-  const views::View* view = nullptr;
+  const views::PreparedImage* image = nullptr;
 
   [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& x_local) const noexcept {
     return R_camera_world * x_local + offset_camera_m;

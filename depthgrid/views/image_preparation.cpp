@@ -25,7 +25,7 @@ namespace depthgrid::views::HWY_NAMESPACE {
 template <bool kUnits, int kReach>
 class Passes {
  public:
-  HWY_INLINE Passes(const Reading& reading, const NewImage& image, PreparationRows& rows, const PreparedImage& result)
+  HWY_INLINE Passes(const Reading& reading, const NewImage& image, PreparationRows& rows, PreparedImage& result)
       : reading_(reading),
         image_(image),
         rows_(rows),
@@ -64,9 +64,9 @@ class Passes {
       const char* source = static_cast<const char*>(image_.depth.data) + image_.depth.stride_bytes * v;
       if constexpr (kUnits) {
         decode_row(reading_, reinterpret_cast<const std::uint16_t*>(source), 2 * image_.depth.stride_bytes, width_px_,
-                   pixel_row(static_cast<std::uint16_t*>(result_.kept), width_px_, v), rows_.codes(v));
+                   pixel_row(reinterpret_cast<std::uint16_t*>(result_.kept.data()), width_px_, v), rows_.codes(v));
       } else {
-        std::memcpy(pixel_row(static_cast<float*>(result_.kept), width_px_, v), source,
+        std::memcpy(pixel_row(reinterpret_cast<float*>(result_.kept.data()), width_px_, v), source,
                     static_cast<std::size_t>(width_px_) * sizeof(float));
       }
     }
@@ -86,7 +86,7 @@ class Passes {
                    rows_);
       } else {
         reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
-                   pixel_row(static_cast<const float*>(result_.kept), width_px_, v), reduced, rows_);
+                   pixel_row(reinterpret_cast<const float*>(result_.kept.data()), width_px_, v), reduced, rows_);
       }
       filter_row<kReach>(rows_.reduced_m(), rows_.columns().filtered(v), image_.reach_px, rows_.minimum_m(v));
     }
@@ -122,10 +122,11 @@ class Passes {
     PixelRange island_rows;
     if (narrow_) {
       from_codes<kReach == 0 ? 0 : 2 * kReach + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
-                                                   result_.free_m, [&](int row) { return rows_.columns().free(row); });
+                                                   result_.free_m.data(),
+                                                   [&](int row) { return rows_.columns().free(row); });
     }
     for (int row = v; row < std::min(v + 2, height_px_); ++row) {
-      float* free_m = pixel_row(result_.free_m, width_px_, row);
+      float* free_m = pixel_row(result_.free_m.data(), width_px_, row);
       filter_columns<kReach>(rows_, rows_.columns().free(row), image_.reach_px, row, free_m);
       const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns().robot(row) : PixelRange{};
       if (!robot.empty() && join_robot(image_, row, robot, result_, free_m)) {
@@ -138,21 +139,21 @@ class Passes {
 
   /// The rows j and j + 1 of level 0, and what can be made of them.
   HWY_INLINE void first_level(int j) {
-    float* level = result_.minima_m + result_.levels[0].offset;
+    float* level = result_.minima_m.data() + result_.levels[0].offset;
     if (narrow_) {
       from_codes<kReach == 0 ? 0 : 2 * kReach + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
                                                    [&](int row) { return rows_.columns().texels(row); });
     }
     for (int row = std::max(j, 0); row < std::min(j + 2, height_px_); ++row) {
       first_level_row(rows_, rows_.columns().texels(row), row, pixel_row(level, width_px_, row));
-      minimum_rows_above(result_.levels, row, rows_.scratch(), result_.minima_m);
+      minimum_rows_above(result_.levels, row, rows_.scratch(), result_.minima_m.data());
     }
   }
 
   const Reading& reading_;
   const NewImage& image_;
   PreparationRows& rows_;
-  const PreparedImage& result_;
+  PreparedImage& result_;
   int width_px_;
   int height_px_;
   bool narrow_;  ///< filter codes, and single precision only where the robot asks for it
@@ -160,12 +161,12 @@ class Passes {
 
 template <bool kUnits>
 HWY_INLINE PixelRange prepare_as(const Reading& reading, const NewImage& image, PreparationRows& rows,
-                                 const PreparedImage& result) {
+                                 PreparedImage& result) {
   return image.reach_px == 1 ? Passes<kUnits, 1>(reading, image, rows, result).run()
                              : Passes<kUnits, 0>(reading, image, rows, result).run();
 }
 
-PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows, const PreparedImage& result) {
+PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows, PreparedImage& result) {
   return image.depth.format == DepthFormat::uint16_units ? prepare_as<true>(reading, image, rows, result)
                                                          : prepare_as<false>(reading, image, rows, result);
 }
@@ -179,7 +180,7 @@ namespace depthgrid::views {
 HWY_EXPORT(prepare);
 
 PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows,
-                   const PreparedImage& result) noexcept {
+                   PreparedImage& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(prepare)(reading, image, rows, result);
 }
 

@@ -6,12 +6,10 @@
 // are done in single precision. All instruction sets give the same bits: no fused multiply-add anywhere.
 #pragma once
 
-#include <vector>
-
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/views/preparation_rows.hpp"
+#include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/reading.hpp"
-#include "depthgrid/views/view.hpp"
 
 namespace depthgrid::views {
 
@@ -24,20 +22,9 @@ struct NewImage {
   float blind_m = 0;   ///< where the blind zone ends, rounded up
 };
 
-/// What is written; images are dense.
-struct PreparedImage {
-  void* kept;  ///< the values as they were read
-  float* free_m;
-  float* minima_m;
-  const std::vector<PyramidLevel>& levels;
-  float* island_near_m;
-  float* island_far_m;
-  std::vector<PixelRange>& island_columns;  ///< where a row of the island images is not "none", a row each
-};
-
-/// Prepares a whole image. Before, the island images and columns hold "none" everywhere if there is a robot. Returns
-/// the rows that have islands.
+/// Writes everything but the island pyramids and bands. Before, the island images and columns hold "none" everywhere if
+/// there is a robot. Returns the rows that have islands.
 PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows,
-                   const PreparedImage& result) noexcept;
+                   PreparedImage& result) noexcept;
 
 }  // namespace depthgrid::views

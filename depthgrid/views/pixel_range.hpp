@@ -1,4 +1,4 @@
-// Columns (or rows) of pixels.
+// Columns (or rows) of pixels. Internal.
 #pragma once
 
 #include <algorithm>

@@ -135,11 +135,14 @@ HWY_INLINE PixelRange island_texels(bool from_image, int j, const PyramidLevel& 
   return texels_within(all, step, reach, below.width);
 }
 
-void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float* near_m, const float* far_m,
-                           const std::vector<PixelRange>& image_columns, float* scratch, float* near_maxima_m,
-                           float* far_minima_m, std::vector<PixelRange>& texel_columns) {
-  const PixelRange* below_columns = image_columns.data();
-  PixelRange* columns = texel_columns.data();
+void build_island_pyramids(PreparedImage& image, float* scratch) {
+  const std::vector<PyramidLevel>& levels = image.levels;
+  const float* near_m = image.island_near_m.data();
+  const float* far_m = image.island_far_m.data();
+  float* near_maxima_m = image.island_near_maxima_m.data();
+  float* far_minima_m = image.island_far_minima_m.data();
+  const PixelRange* below_columns = image.island_columns.data();
+  PixelRange* columns = image.island_texels.data();
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const PyramidLevel& level = levels[l];
     const PyramidLevel& below = levels[l == 0 ? 0 : l - 1];
@@ -178,19 +181,8 @@ void minimum_rows_above(const std::vector<PyramidLevel>& levels, int j, float* s
   HWY_DYNAMIC_DISPATCH(minimum_rows_above)(levels, j, scratch, texels);
 }
 
-void build_island_pyramids(const std::vector<PyramidLevel>& levels, const float* near_m, const float* far_m,
-                           const std::vector<PixelRange>& image_columns, float* scratch, float* near_maxima_m,
-                           float* far_minima_m, std::vector<PixelRange>& texel_columns) noexcept {
-  HWY_DYNAMIC_DISPATCH(build_island_pyramids)
-  (levels, near_m, far_m, image_columns, scratch, near_maxima_m, far_minima_m, texel_columns);
-}
-
-std::size_t row_count(const std::vector<PyramidLevel>& levels) noexcept {
-  std::size_t count = 0;
-  for (const PyramidLevel& level : levels) {
-    count += static_cast<std::size_t>(level.height);
-  }
-  return count;
+void build_island_pyramids(PreparedImage& image, float* scratch) noexcept {
+  HWY_DYNAMIC_DISPATCH(build_island_pyramids)(image, scratch);
 }
 
 }  // namespace depthgrid::views

@@ -41,7 +41,7 @@ HWY_INLINE PixelRange robot_columns(const NewImage& image, int v) {
 
 /// Frees one row of g up to the robot's exits where the robot begins in free space. Where it does not, or reaches into
 /// the blind zone, it is an island.
-HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& columns, const PreparedImage& result,
+HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& columns, PreparedImage& result,
                            float* free_row_m) {
   const Floats d;
   const int n = lanes(d);
@@ -61,12 +61,12 @@ HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& colum
     store_some(hn::IfThenElse(begins_free, hn::Max(free, far), free), d, free_row_m + u, count);
     const M island = hn::And(robot, hn::Or(hn::Gt(near, free), hn::Lt(near, blind)));
     if (!hn::AllFalse(d, island)) {
-      ask_for(pixel_row(result.island_near_m, width_px, v + 2) + u, 0);
-      ask_for(pixel_row(result.island_far_m, width_px, v + 2) + u, 0);
-      store_some(hn::IfThenElse(island, near, hn::Set(d, kInf)), d, pixel_row(result.island_near_m, width_px, v) + u,
-                 count);
-      store_some(hn::IfThenElse(island, far, hn::Set(d, -kInf)), d, pixel_row(result.island_far_m, width_px, v) + u,
-                 count);
+      ask_for(pixel_row(result.island_near_m.data(), width_px, v + 2) + u, 0);
+      ask_for(pixel_row(result.island_far_m.data(), width_px, v + 2) + u, 0);
+      store_some(hn::IfThenElse(island, near, hn::Set(d, kInf)), d,
+                 pixel_row(result.island_near_m.data(), width_px, v) + u, count);
+      store_some(hn::IfThenElse(island, far, hn::Set(d, -kInf)), d,
+                 pixel_row(result.island_far_m.data(), width_px, v) + u, count);
       islands = joined(islands, {u, std::min(u + n, width_px)});
     }
   }

@@ -41,7 +41,7 @@ bool look(const views::Snapshot& snapshot, LeftOutReading& reading) {
       continue;
     }
     covered = true;
-    const double beyond_m = static_cast<double>(snapshot.view(k).free_m().at(u, v)) - p_camera.z();
+    const double beyond_m = static_cast<double>(snapshot.view(k).free_m(u, v)) - p_camera.z();
     if (beyond_m > most_m) {
       most_m = beyond_m;
       reading.freed_by = static_cast<int>(k);

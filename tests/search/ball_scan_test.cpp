@@ -14,6 +14,7 @@
 
 #include "depthgrid/core/pixel_frustum.hpp"
 #include "depthgrid/search/ball_test.hpp"
+#include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/view_store.hpp"
 #include "reference/random_problem.hpp"
 #include "support/random_run.hpp"
@@ -87,18 +88,18 @@ class Scene {
 
   /// The depths of a pixel that are not free, each part closed.
   [[nodiscard]] std::vector<std::array<double, 2>> not_free(int u, int v) const {
-    const views::View& view = snapshot_->view(0);
+    const views::PreparedImage& image = views::prepared(snapshot_->view(0));
     const double blind_m = camera_.rule.near_m;
-    const double free_m = static_cast<double>(view.free_m().at(u, v));
+    const double free_m = static_cast<double>(image.free_m.at(u, v));
     std::vector<std::array<double, 2>> parts{{std::max(free_m, blind_m), kInfinity}};
     if (blind_m > 0) {
       parts.push_back({0, blind_m});
     }
-    if (!view.has_islands() || !(view.island_near_m().at(u, v) <= view.island_far_m().at(u, v))) {
+    if (!image.has_islands || !(image.island_near_m.at(u, v) <= image.island_far_m.at(u, v))) {
       return parts;
     }
-    const double low_m = static_cast<double>(view.island_near_m().at(u, v));
-    const double high_m = static_cast<double>(view.island_far_m().at(u, v));
+    const double low_m = static_cast<double>(image.island_near_m.at(u, v));
+    const double high_m = static_cast<double>(image.island_far_m.at(u, v));
     std::vector<std::array<double, 2>> rest;
     for (const auto& [begin_m, end_m] : parts) {
       if (begin_m < low_m) {

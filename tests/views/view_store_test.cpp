@@ -47,7 +47,7 @@ struct Wall {
   double time_s;
 };
 
-float free_m(const Snapshot& snapshot, std::size_t camera = 0) { return snapshot.view(camera).free_m().at(1, 2); }
+float free_m(const Snapshot& snapshot, std::size_t camera = 0) { return snapshot.view(camera).free_m(1, 2); }
 
 TEST(ViewStore, FreesNothingBeforeTheFirstFrame) {
   const ViewStore store(rig_of(2), settings_for(2));

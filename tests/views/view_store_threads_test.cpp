@@ -7,6 +7,7 @@
 #include <iostream>
 #include <thread>
 
+#include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/view_store.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/random_run.hpp"
@@ -62,21 +63,22 @@ int number_of(const View& view) {
   if (!view.present()) {
     return 0;
   }
-  const float depth_m = view.free_m().at(0, 0);
+  const PreparedImage& image = prepared(view);
+  const float depth_m = view.free_m(0, 0);
   const int number = static_cast<int>(depth_m);
-  bool whole = view.time_s() == 0.001 * number && view.T_world_camera().translation().x() == 0.001 * number &&
-               view.has_islands();
+  bool whole =
+      view.time_s() == 0.001 * number && view.T_world_camera().translation().x() == 0.001 * number && image.has_islands;
   for (int v = 0; v < kHeight; ++v) {
     for (int u = 0; u < kWidth; ++u) {
-      whole = whole && view.free_m().at(u, v) == depth_m && view.measured_m(u, v) == depth_m &&
-              view.island_near_m().at(u, v) == depth_m + 0.25F && view.island_far_m().at(u, v) == depth_m + 0.5F;
+      whole = whole && view.free_m(u, v) == depth_m && view.measured_m(u, v) == depth_m &&
+              image.island_near_m.at(u, v) == depth_m + 0.25F && image.island_far_m.at(u, v) == depth_m + 0.5F;
     }
   }
-  const PyramidLevel& top = view.levels().back();
+  const PyramidLevel& top = image.levels.back();
   const std::size_t texels = top.offset + static_cast<std::size_t>(top.width) * static_cast<std::size_t>(top.height);
   for (std::size_t i = 0; i < texels; ++i) {
-    whole = whole && view.minima_m()[i] == depth_m && view.island_near_maxima_m()[i] == depth_m + 0.25F &&
-            view.island_far_minima_m()[i] == depth_m + 0.5F;
+    whole = whole && image.minima_m[i] == depth_m && image.island_near_maxima_m[i] == depth_m + 0.25F &&
+            image.island_far_minima_m[i] == depth_m + 0.5F;
   }
   return whole ? number : -1;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 
+#include "depthgrid/views/prepared_image.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/random_run.hpp"
 #include "views/random_frame.hpp"
@@ -33,28 +34,28 @@ void for_every_target(const Body& body) {
 
 /// Everything that a view holds, as one string of bits.
 std::vector<std::uint32_t> bits(const View& view) {
-  std::vector<std::uint32_t> result{view.present() ? 1U : 0U, view.has_islands() ? 1U : 0U};
+  const PreparedImage& image = prepared(view);
+  std::vector<std::uint32_t> result{view.present() ? 1U : 0U, image.has_islands ? 1U : 0U};
   const auto append = [&result](const float* values, std::size_t count) {
     const std::size_t old = result.size();
     result.resize(old + count);
     std::memcpy(result.data() + old, values, count * sizeof(float));
   };
-  const std::size_t pixels = view.free_m().index(0, view.height_px());
-  std::size_t texels = 0;
-  (void)pyramid_levels(view.width_px(), view.height_px(), texels);
+  const std::size_t pixels = image.free_m.index(0, view.height_px());
+  const std::size_t texels = image.minima_m.size();
   for (int v = 0; v < view.height_px(); ++v) {
     for (int u = 0; u < view.width_px(); ++u) {
       const float measured_m = view.measured_m(u, v);
       append(&measured_m, 1);
     }
   }
-  append(view.free_m().data(), pixels);
-  append(view.minima_m(), texels);
-  if (view.has_islands()) {
-    append(view.island_near_m().data(), pixels);
-    append(view.island_far_m().data(), pixels);
-    append(view.island_near_maxima_m(), texels);
-    append(view.island_far_minima_m(), texels);
+  append(image.free_m.data(), pixels);
+  append(image.minima_m.data(), texels);
+  if (image.has_islands) {
+    append(image.island_near_m.data(), pixels);
+    append(image.island_far_m.data(), pixels);
+    append(image.island_near_maxima_m.data(), texels);
+    append(image.island_far_minima_m.data(), texels);
   }
   return result;
 }
@@ -89,7 +90,7 @@ TEST(View, FollowsItsDefinitionOnEveryInstructionSet) {
         SCOPED_TRACE("frame " + std::to_string(f));
         ASSERT_TRUE(view.update(frames[f].frame(), Pose::Identity()));
         EXPECT_EQ(view.time_s(), frames[f].frame().time_s);
-        islands += view.has_islands() ? 1 : 0;
+        islands += prepared(view).has_islands ? 1 : 0;
         joined += frames[f].frame().robot.near_m != nullptr ? 1 : 0;
         if (first.size() == f) {
           ASSERT_TRUE(follows_definition(view, c.camera, c.margins, c.policies, frames[f].frame()));
@@ -137,16 +138,16 @@ TEST(View, RobotByHand) {
   c.near_m[3] = 1.0F;
   c.far_m[3] = 1.5F;
   const View view = c.view();
-  EXPECT_EQ(view.free_m().at(0, 0), 2.5F) << "up to the robot's exit";
-  EXPECT_NEAR(view.free_m().at(1, 0), 1.0, 2e-6) << "a hand before the robot stays";
-  EXPECT_EQ(view.free_m().at(2, 0), 0.0F) << "the robot's mask alone frees nothing";
-  EXPECT_NEAR(view.free_m().at(3, 0), 2.0, 2e-6) << "seen past the robot";
-  EXPECT_NEAR(view.free_m().at(4, 0), 2.0, 2e-6) << "no robot";
-  ASSERT_TRUE(view.has_islands());
+  EXPECT_EQ(view.free_m(0, 0), 2.5F) << "up to the robot's exit";
+  EXPECT_NEAR(view.free_m(1, 0), 1.0, 2e-6) << "a hand before the robot stays";
+  EXPECT_EQ(view.free_m(2, 0), 0.0F) << "the robot's mask alone frees nothing";
+  EXPECT_NEAR(view.free_m(3, 0), 2.0, 2e-6) << "seen past the robot";
+  EXPECT_NEAR(view.free_m(4, 0), 2.0, 2e-6) << "no robot";
+  ASSERT_TRUE(prepared(view).has_islands);
   for (int u = 0; u < 5; ++u) {
     const bool island = u == 1 || u == 2;
-    EXPECT_EQ(view.island_near_m().at(u, 0), island ? 1.5F : std::numeric_limits<float>::infinity()) << u;
-    EXPECT_EQ(view.island_far_m().at(u, 0), island ? 2.5F : -std::numeric_limits<float>::infinity()) << u;
+    EXPECT_EQ(prepared(view).island_near_m.at(u, 0), island ? 1.5F : std::numeric_limits<float>::infinity()) << u;
+    EXPECT_EQ(prepared(view).island_far_m.at(u, 0), island ? 2.5F : -std::numeric_limits<float>::infinity()) << u;
   }
 }
 
@@ -156,9 +157,9 @@ TEST(View, JoinsTheRobotOfAPixelThatTheFilterLowered) {
   c.near_m[6] = 1.5F;  // pixel (1, 1), whose neighbours see the wall behind at 2 m
   c.far_m[6] = 2.5F;
   const View view = c.view();
-  EXPECT_EQ(view.free_m().at(1, 1), 2.5F);
-  EXPECT_NEAR(view.free_m().at(2, 1), 2.0, 2e-6) << "the exit is not spread to a neighbour";
-  EXPECT_FALSE(view.has_islands());
+  EXPECT_EQ(view.free_m(1, 1), 2.5F);
+  EXPECT_NEAR(view.free_m(2, 1), 2.0, 2e-6) << "the exit is not spread to a neighbour";
+  EXPECT_FALSE(prepared(view).has_islands);
 }
 
 TEST(View, IgnoredPocketsAreFreedBehindTheRobotOnly) {
@@ -171,35 +172,35 @@ TEST(View, IgnoredPocketsAreFreedBehindTheRobotOnly) {
   c.units[1] = 1000;  // before the robot
   c.far_m[2] = 1.9F;  // the reading lies behind the robot
   const View view = c.view();
-  EXPECT_NEAR(view.free_m().at(0, 0), 2.6, 2e-6);
-  EXPECT_NEAR(view.free_m().at(1, 0), 1.0, 2e-6);
-  EXPECT_EQ(view.island_far_m().at(1, 0), 2.5F) << "an island is the robot without the pocket";
-  EXPECT_NEAR(view.free_m().at(2, 0), 2.0, 2e-6);
-  EXPECT_NEAR(view.free_m().at(3, 0), 2.75, 2e-6);
+  EXPECT_NEAR(view.free_m(0, 0), 2.6, 2e-6);
+  EXPECT_NEAR(view.free_m(1, 0), 1.0, 2e-6);
+  EXPECT_EQ(prepared(view).island_far_m.at(1, 0), 2.5F) << "an island is the robot without the pocket";
+  EXPECT_NEAR(view.free_m(2, 0), 2.0, 2e-6);
+  EXPECT_NEAR(view.free_m(3, 0), 2.75, 2e-6);
   c.policies = {Policy::obstacle, Policy::obstacle, Policy::obstacle, 0};
-  EXPECT_EQ(c.view().free_m().at(3, 0), 2.5F);
+  EXPECT_EQ(c.view().free_m(3, 0), 2.5F);
 }
 
 TEST(View, FreesNothingWhenTheFrameIsUnusable) {
   SmallCamera c;
   View view(c.camera, c.margins, c.policies);
   EXPECT_FALSE(view.present());
-  EXPECT_EQ(view.free_m().at(2, 2), 0.0F);
+  EXPECT_EQ(view.free_m(2, 2), 0.0F);
   Frame broken = c.frame();
   const auto refused = [&](const char* why) {
     ASSERT_TRUE(view.update(c.frame(), Pose::Identity()));
-    EXPECT_GT(view.free_m().at(2, 2), 1.9F);
+    EXPECT_GT(view.free_m(2, 2), 1.9F);
     EXPECT_FALSE(view.update(broken, Pose::Identity())) << why;
     EXPECT_FALSE(view.present()) << why;
-    EXPECT_FALSE(view.has_islands()) << why;
+    EXPECT_FALSE(prepared(view).has_islands) << why;
     EXPECT_TRUE(std::isnan(view.time_s())) << why;
     for (int v = 0; v < 4; ++v) {
       for (int u = 0; u < 5; ++u) {
-        EXPECT_EQ(view.free_m().at(u, v), 0.0F) << why;
+        EXPECT_EQ(view.free_m(u, v), 0.0F) << why;
         EXPECT_EQ(view.measured_m(u, v), 0.0F) << why;
       }
     }
-    EXPECT_EQ(view.minima_m()[0], 0.0F) << why;
+    EXPECT_EQ(prepared(view).minima_m[0], 0.0F) << why;
     broken = c.frame();
   };
   broken.depth.data = nullptr;

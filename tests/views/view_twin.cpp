@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "depthgrid/views/prepared_image.hpp"
+
 namespace depthgrid::views {
 namespace {
 
@@ -24,6 +26,7 @@ struct Interval {
 /// What every part of the twin reads.
 struct Twin {
   const View& view;
+  const PreparedImage& image;
   const RigCamera& camera;
   const CameraMargins& margins;
   double pocket_m;
@@ -49,7 +52,7 @@ struct Twin {
   [[nodiscard]] Bounds filtered(int u, int v) const;
   [[nodiscard]] testing::AssertionResult pixel(int u, int v, bool& is_island) const;
   template <class Better>
-  [[nodiscard]] testing::AssertionResult level(std::size_t l, const DepthImage& image, const float* texels,
+  [[nodiscard]] testing::AssertionResult level(std::size_t l, const DepthImage& pixels, const float* texels,
                                                const Better& better) const;
 };
 
@@ -94,8 +97,8 @@ testing::AssertionResult Twin::pixel(int u, int v, bool& is_island) const {
     return wrong("measured depth") << view.measured_m(u, v) << ", should be " << measured_m(u, v);
   }
   const Interval r = robot_at(u, v);
-  const float island_near_m = view.has_islands() ? view.island_near_m().at(u, v) : kInf;
-  const float island_far_m = view.has_islands() ? view.island_far_m().at(u, v) : -kInf;
+  const float island_near_m = image.has_islands ? image.island_near_m.at(u, v) : kInf;
+  const float island_far_m = image.has_islands ? image.island_far_m.at(u, v) : -kInf;
   is_island = island_near_m <= island_far_m;
   if (is_island ? island_near_m != r.near_m || island_far_m != r.far_m
                 : island_near_m != kInf || island_far_m != -kInf) {
@@ -117,7 +120,7 @@ testing::AssertionResult Twin::pixel(int u, int v, bool& is_island) const {
       free.high_m = std::max<long double>(free.high_m, r.far_m);
     }
   }
-  const float free_m = view.free_m().at(u, v);
+  const float free_m = image.free_m.at(u, v);
   if (!(free_m >= free.low_m && free_m <= free.high_m)) {
     return wrong("free depth") << free_m << ", should be in [" << static_cast<double>(free.low_m) << ", "
                                << static_cast<double>(free.high_m) << ']';
@@ -126,19 +129,19 @@ testing::AssertionResult Twin::pixel(int u, int v, bool& is_island) const {
 }
 
 template <class Better>
-testing::AssertionResult Twin::level(std::size_t l, const DepthImage& image, const float* texels,
+testing::AssertionResult Twin::level(std::size_t l, const DepthImage& pixels, const float* texels,
                                      const Better& better) const {
-  const PyramidLevel& level = view.levels()[l];
+  const PyramidLevel& level = image.levels[l];
   const int size = 1 << l;
   if (level.width != (width_px() + size - 1) / size || level.height != (height_px() + size - 1) / size) {
     return testing::AssertionFailure() << "level " << l << " is " << level.width << " x " << level.height;
   }
   for (int j = 0; j < level.height; ++j) {
     for (int i = 0; i < level.width; ++i) {
-      float expected = image.at(i * size, j * size);
+      float expected = pixels.at(i * size, j * size);
       for (int v = j * size; v < std::min((j + 4) * size, height_px()); ++v) {
         for (int u = i * size; u < std::min((i + 4) * size, width_px()); ++u) {
-          expected = better(image.at(u, v), expected) ? image.at(u, v) : expected;
+          expected = better(pixels.at(u, v), expected) ? pixels.at(u, v) : expected;
         }
       }
       const float result = texels[level.offset + static_cast<std::uint32_t>(j * level.width + i)];
@@ -155,9 +158,14 @@ testing::AssertionResult Twin::level(std::size_t l, const DepthImage& image, con
 
 testing::AssertionResult follows_definition(const View& view, const RigCamera& camera, const CameraMargins& margins,
                                             const Policies& policies, const Frame& frame) {
-  Twin twin{view,        camera,
-            margins,     policies.robot_pockets == Policy::ignored ? policies.ignored_pocket_m : 0.0,
-            frame.depth, frame.robot};
+  const PreparedImage& image = prepared(view);
+  Twin twin{view,
+            image,
+            camera,
+            margins,
+            policies.robot_pockets == Policy::ignored ? policies.ignored_pocket_m : 0.0,
+            frame.depth,
+            frame.robot};
   const bool units = frame.depth.format == DepthFormat::uint16_units;
   if (twin.depth.stride_bytes == 0) {
     twin.depth.stride_bytes = twin.width_px() * static_cast<std::ptrdiff_t>(units ? 2 : 4);
@@ -175,25 +183,26 @@ testing::AssertionResult follows_definition(const View& view, const RigCamera& c
       some_island = some_island || is_island;
     }
   }
-  if (view.has_islands() != some_island) {
-    return testing::AssertionFailure() << "has_islands() is " << view.has_islands();
+  if (image.has_islands != some_island) {
+    return testing::AssertionFailure() << "has_islands() is " << image.has_islands;
   }
   const int largest_side = std::max(twin.width_px(), twin.height_px());
-  const std::size_t count = view.levels().size();
+  const std::size_t count = image.levels.size();
   if ((8 << (count - 1)) < largest_side || (count > 1 && (8 << (count - 2)) >= largest_side)) {
     return testing::AssertionFailure() << count << " levels";
   }
   for (std::size_t l = 0; l < count; ++l) {
-    if (auto result = twin.level(l, view.free_m(), view.minima_m(), std::less<>()); !result) {
+    if (auto result = twin.level(l, image.free_m, image.minima_m.data(), std::less<>()); !result) {
       return result << " (free depth)";
     }
-    if (!view.has_islands()) {
+    if (!image.has_islands) {
       continue;
     }
-    if (auto result = twin.level(l, view.island_near_m(), view.island_near_maxima_m(), std::greater<>()); !result) {
+    if (auto result = twin.level(l, image.island_near_m, image.island_near_maxima_m.data(), std::greater<>());
+        !result) {
       return result << " (near ends of islands)";
     }
-    if (auto result = twin.level(l, view.island_far_m(), view.island_far_minima_m(), std::less<>()); !result) {
+    if (auto result = twin.level(l, image.island_far_m, image.island_far_minima_m.data(), std::less<>()); !result) {
       return result << " (far ends of islands)";
     }
   }
