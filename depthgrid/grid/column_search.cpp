@@ -1,28 +1,24 @@
 #include "depthgrid/grid/column_search.hpp"
 
-#include <array>
 #include <bit>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "depthgrid/grid/column_search.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target: highway.h must be seen once for each target.
-#include <hwy/highway.h>
+// After foreach_target: it must be seen once for each target.
+#include "depthgrid/core/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::grid::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
+using namespace lanes::HWY_NAMESPACE;
 using Line = ClosedFormMap::Line;
-using Floats = hn::CappedTag<float, ClosedFormMap::kPadding>;
-using Ints = hn::RebindToSigned<Floats>;
+static_assert(ClosedFormMap::kPadding >= hn::MaxLanes(Floats()), "what is read beside the cells is padding");
 
 constexpr int kNone = std::numeric_limits<int>::max();
 
-/// Lanes whose cell this camera denies. The operations and their order are those of ClosedFormMap::Ray::pixel: no fused
-/// multiply-add, so that every target gives the same bits.
-HWY_INLINE hn::Mask<Floats> denied(const Line& line, const float* HWY_RESTRICT depth_m, int n) {
+/// Lanes whose cell this camera denies. The operations and their order are those of ClosedFormMap::Ray::pixel.
+HWY_INLINE M denied(const Line& line, const float* HWY_RESTRICT depth_m, int n) {
   const Floats d;
   const Ints di;
   const auto zero = hn::Zero(d);
@@ -46,8 +42,7 @@ HWY_INLINE hn::Mask<Floats> denied(const Line& line, const float* HWY_RESTRICT d
 /// Bit i: cell n + i lies in [low, high] and no camera denies it.
 HWY_INLINE std::uint32_t confirmed_lanes(std::span<const ClosedFormMap::Ray> rays,
                                          std::span<const float* const> depths_m, int n, int low, int high) {
-  const Floats d;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const auto lanes = static_cast<int>(hn::Lanes(Floats()));
   const int skip = std::max(low - n, 0);
   const int end = std::min(high - n + 1, lanes);
   if (skip >= end) {
@@ -56,9 +51,7 @@ HWY_INLINE std::uint32_t confirmed_lanes(std::span<const ClosedFormMap::Ray> ray
   const std::uint32_t below_end = end >= 32 ? ~0U : (1U << end) - 1U;
   std::uint32_t alive = below_end & ~((1U << skip) - 1U);
   for (std::size_t k = 0; k < rays.size() && alive != 0; ++k) {
-    std::array<std::uint8_t, 8> bytes{};
-    hn::StoreMaskBits(d, denied(rays[k].line(), depths_m[k], n), bytes.data());
-    alive &= ~(static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U);
+    alive &= ~bits_of(denied(rays[k].line(), depths_m[k], n));
   }
   return alive;
 }

@@ -7,21 +7,16 @@
 #define DEPTHGRID_ROBOT_CAPSULE_RAY_INL
 #endif
 
-#include <hwy/highway.h>
-
 #include <array>
 #include <limits>
 
+#include "depthgrid/core/lanes-inl.hpp"
 #include "depthgrid/robot/robot_rows.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::robot::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-// No fused multiply-add anywhere: every instruction set gives the same bits.
-using Floats = hn::CappedTag<float, kLanes>;
-using V = hn::Vec<Floats>;
-using M = hn::Mask<Floats>;
+using namespace lanes::HWY_NAMESPACE;
+static_assert(kLanes >= hn::MaxLanes(Floats()), "rows are padded to whole vectors");
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 

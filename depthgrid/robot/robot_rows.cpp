@@ -5,9 +5,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "depthgrid/robot/robot_rows.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target: highway.h must be seen once for each target.
-#include <hwy/highway.h>
-
+// After foreach_target: it must be seen once for each target.
 #include "depthgrid/robot/capsule_ray-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
