@@ -1,4 +1,4 @@
-// The two ways to find the largest scale of one task, once it stands in orthonormal rows.
+// The two ways to find the largest scale of one task, once it stands in orthonormal rows. Internal.
 #pragma once
 
 #include <optional>

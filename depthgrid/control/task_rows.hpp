@@ -1,4 +1,4 @@
-// What a task can ask of the joints beside the tasks before it: orthonormal rows instead of its Jacobian.
+// What a task can ask of the joints beside the tasks before it: orthonormal rows instead of its Jacobian. Internal.
 //
 //   J P = U S Vt,  P: the null space of the rows taken before
 //   J (x - x0) = r  becomes  Vt (x - x0) = F U^T r,  F = phi(s) / s

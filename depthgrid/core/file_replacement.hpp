@@ -1,4 +1,4 @@
-// A file that appears under its name only when it is complete. Not part of the installed headers.
+// A file that appears under its name only when it is complete. Not part of the installed headers. Internal.
 #pragma once
 
 #include <cstdio>

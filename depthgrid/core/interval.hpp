@@ -1,4 +1,4 @@
-// Interval arithmetic in double precision, for bounds over a whole pixel. Internal to the library.
+// Interval arithmetic in double precision, for bounds over a whole pixel. Internal to the library. Internal.
 //
 // Results are not rounded outward: they hold up to a relative error of about 1e-15, which callers add or neglect.
 #pragma once

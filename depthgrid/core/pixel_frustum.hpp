@@ -1,4 +1,4 @@
-// The part of a pixel's pyramid between two depths, and its distance from a point.
+// The part of space that one pixel looks at between two depths, and its distance from a point.
 #pragma once
 
 #include <Eigen/Core>

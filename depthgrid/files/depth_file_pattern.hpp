@@ -1,4 +1,4 @@
-// Names of image sequences. Not part of the installed headers; depth_file_name() stands in rig_file.hpp.
+// Names of image sequences. Not part of the installed headers; depth_file_name() stands in rig_file.hpp. Internal.
 #pragma once
 
 #include <string>

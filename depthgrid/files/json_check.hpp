@@ -1,4 +1,5 @@
 // JSON text to a document that obeys a schema, with errors that name the place. Not part of the installed headers.
+// Internal.
 #pragma once
 
 #include <rapidjson/document.h>

@@ -1,4 +1,4 @@
-// Numbers in text, independent of the locale. Not part of the installed headers.
+// Numbers in text, independent of the locale. Not part of the installed headers. Internal.
 #pragma once
 
 #include <charconv>

@@ -1,4 +1,4 @@
-// The errors of a camera as its entry of the rig file states them. Not part of the installed headers.
+// The errors of a camera as its entry of the rig file states them. Not part of the installed headers. Internal.
 #pragma once
 
 #include <rapidjson/document.h>

@@ -1,4 +1,4 @@
-// A whole text file as a string, read and written. Not part of the installed headers.
+// A whole text file as a string, read and written. Internal.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Whether one camera has seen a whole cell of the depth grid free: sufficient, so sound.
+// Whether one camera has seen a whole cell of the depth grid free: sufficient, so sound. Internal.
 #pragma once
 
 #include <Eigen/Core>

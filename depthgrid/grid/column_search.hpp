@@ -1,4 +1,4 @@
-// The walk along the cells of one principal pixel until all involved secondary cameras confirm an obstacle.
+// The walk along the cells of one principal pixel until all involved secondary cameras confirm an obstacle. Internal.
 //
 // For the closed form several cells are judged at once with the widest instructions of the machine at hand, chosen at
 // run time; the answers are those of one cell after the other, bit for bit.

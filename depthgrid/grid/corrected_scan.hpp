@@ -1,5 +1,6 @@
 // The scan over the principal camera's pixels with the letter's errors mended: for each pixel the nearest cell, by
 // exact distance, that no camera has seen free. Its obstacle set contains the exact one, so it never over-estimates.
+// Internal.
 #pragma once
 
 #include <array>

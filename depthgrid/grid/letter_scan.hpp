@@ -1,4 +1,4 @@
-// The scan over the principal camera's pixels as the letter prints it: cases (i)-(iv) of section VI and VII.
+// The scan over the principal camera's pixels as the letter prints it: cases (i)-(iv) of section VI and VII. Internal.
 //
 // Known deviations from a bound that never over-estimates, kept on purpose (f = 525 px, rho = 0.4 m, 1 cm cells):
 //  - the printed window is half of what the rho-sphere needs (surveillance_window.hpp);

@@ -1,4 +1,4 @@
-// The newest image of one camera, prepared once per frame for all control points.
+// The newest image of one camera, prepared once per frame for all control points. Internal.
 #pragma once
 
 #include <cstdint>

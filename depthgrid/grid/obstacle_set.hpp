@@ -1,4 +1,4 @@
-// What a scan over the principal camera's pixels collects for one control point.
+// What a scan over the principal camera's pixels collects for one control point. Internal.
 #pragma once
 
 #include <Eigen/Core>

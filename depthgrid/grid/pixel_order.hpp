@@ -1,4 +1,4 @@
-// The order in which principal pixels are visited.
+// The order in which principal pixels are visited. Internal.
 #pragma once
 
 #include <algorithm>

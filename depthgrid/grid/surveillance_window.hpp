@@ -1,4 +1,4 @@
-// Which pixels of the principal camera can hold an obstacle within rho of a point.
+// Which pixels of the principal camera can hold an obstacle within rho of a point. Internal.
 #pragma once
 
 #include <Eigen/Core>

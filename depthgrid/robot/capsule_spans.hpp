@@ -1,4 +1,4 @@
-// Which pixels of each row of an image a capsule may cover. Internal.
+// Which pixels of each row of an image a capsule may cover.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The depth interval of capsules in one row of an image, a vector register of pixels at a time. Internal.
+// The depth interval of capsules in one row of an image, a vector register of pixels at a time.
 #pragma once
 
 #include <array>

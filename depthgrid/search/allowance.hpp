@@ -1,4 +1,4 @@
-// How much more a call may do.
+// How much more a call may do. Internal.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Distance between a primitive's axis (a point or a segment) and an axis-aligned box.
+// Distance between a primitive's axis (a point or a segment) and an axis-aligned box. Internal.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Which pixels a ball may meet in one camera's image: all that need an exact test, and few others.
+// Which pixels a ball may meet in one camera's image: all that need an exact test, and few others. Internal.
 #pragma once
 
 #include "depthgrid/search/local_camera.hpp"

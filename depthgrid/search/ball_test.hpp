@@ -1,4 +1,4 @@
-// Exact: does a ball meet what one camera has not seen free?
+// Exact: does a ball meet what one camera has not seen free? Internal.
 #pragma once
 
 #include <Eigen/Core>

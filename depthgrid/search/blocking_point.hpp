@@ -1,4 +1,4 @@
-// Whether a point lies in or beside what a camera has not seen free: what ends a search.
+// Whether a point lies in or beside what a camera has not seen free: what ends a search. Internal.
 #pragma once
 
 #include <Eigen/Core>

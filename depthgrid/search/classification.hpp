@@ -1,4 +1,4 @@
-// What stands at the nearest point of an answer.
+// What stands at the nearest point of an answer. Internal.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The eight children of an octree cube: how near they are, and which of them the cameras free.
+// The eight children of an octree cube: how near they are, and which of them the cameras free. Internal.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// The search for the nearest obstacles of a group of primitives.
+// The search for the nearest obstacles of a group of primitives. Internal.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// What is known of the pixels of an octree cube's children before they are looked up.
+// What is known of the pixels of an octree cube's children before they are looked up. Internal.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // The open cubes of a best-first search, in buckets of distance: push and pop take constant time and never allocate.
+// Internal.
 #pragma once
 
 #include <algorithm>

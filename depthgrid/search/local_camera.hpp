@@ -1,4 +1,4 @@
-// One camera as one query sees it: relative to the query's origin, in the precision that each test needs.
+// One camera as one query sees it: relative to the query's origin, in the precision that each test needs. Internal.
 #pragma once
 
 #include <Eigen/Core>

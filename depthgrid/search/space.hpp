@@ -1,4 +1,4 @@
-// W, the space of interest: membership and distance to its border.
+// W, the space of interest: membership and distance to its border. Internal.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// The words of a text, with the line that each stands on. Internal to the reading of motion files.
+// The words of a text, with the line that each stands on. Internal to the reading of motion files. Internal.
 #pragma once
 
 #include <Eigen/Core>

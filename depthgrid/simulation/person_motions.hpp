@@ -1,4 +1,4 @@
-// The poses that each scripted motion passes.
+// The poses that each scripted motion passes. Internal.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The matrix of a rotation about an axis, for the bodies of the cell.
+// The matrix of a rotation about an axis, for the bodies of the cell. Internal.
 #pragma once
 
 #include <Eigen/Geometry>

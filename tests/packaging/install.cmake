@@ -18,6 +18,13 @@ foreach(header IN LISTS headers)
       message(FATAL_ERROR "${header} is installed and includes ${included}, which is not")
     endif()
   endforeach()
+  # How a view keeps its image is free to change.
+  file(READ "${WORK}/moved/include/${header}" text)
+  foreach(word "[Pp]yramid" "// [^\n]*Internal\\.")
+    if(text MATCHES "${word}")
+      message(FATAL_ERROR "${header} is installed and says '${CMAKE_MATCH_0}'")
+    endif()
+  endforeach()
 endforeach()
 
 build_and_run_consumer("${WORK}/moved")
