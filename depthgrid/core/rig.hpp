@@ -46,6 +46,9 @@ void validate(const Rig& rig);
 /// Error otherwise; `reader` begins the message about distortion.
 [[nodiscard]] Rig checked_rig(Rig rig, const char* reader);
 
+/// C++ that makes the same rig, to the bit: for a report that can be run again.
+[[nodiscard]] std::string to_string(const Rig& rig);
+
 /// The margins of all cameras, in the rig's order. Throws Error that names a camera without.
 std::vector<CameraMargins> camera_margins(const Rig& rig);
 

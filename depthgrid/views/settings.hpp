@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -62,5 +63,8 @@ struct Settings {
 
 /// Throws Error with value, rule and hint unless every part is set and in range for this rig.
 void validate(const Settings& settings, const Rig& rig);
+
+/// C++ that makes the same settings, to the bit: for a report that can be run again.
+[[nodiscard]] std::string to_string(const Settings& settings);
 
 }  // namespace depthgrid::views
