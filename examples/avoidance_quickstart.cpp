@@ -1,10 +1,10 @@
 // Quick start of the avoidance loop: arm, cameras and driver are stand-ins, what is yours is marked YOURS.
 //
 //   avoidance_quickstart [arm.urdf tool0]       your arm, and the link that follows the task; else the KUKA LWR 4+
-//   find_package(depthgrid 0.1 REQUIRED COMPONENTS avoidance simulation)    simulation: for the stand-ins
+//   find_package(depthgrid 0.1 REQUIRED COMPONENTS avoidance search simulation)    simulation: for the stand-ins
 //
 // Positions are in one world frame, that in which the cameras were calibrated. cycle() belongs to the robot's thread,
-// frames() and take() to that of the cameras; here they take turns. Only construction throws, depthgrid::Error.
+// frames() and update() to that of the cameras; here they take turns. Only construction throws, depthgrid::Error.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,13 +15,13 @@
 #include "depthgrid/avoidance/avoidance_loop.hpp"
 #include "depthgrid/avoidance/history_port.hpp"
 #include "depthgrid/avoidance/model_limits.hpp"
-#include "depthgrid/avoidance/search_distances.hpp"
 #include "depthgrid/control/polygon_task.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "depthgrid/robot/urdf.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "depthgrid/simulation/scene.hpp"
 #include "depthgrid/views/surveillance_radius.hpp"
 
@@ -88,7 +88,8 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   // Until an image is here, until the next one, until the next evaluation: so old is what rho is asked of.
   const double greatest_age_s = 0.02 + 1.0 / 30 + settings.evaluate_every * period_s;
   what.rho_m = views::surveillance_radius_m(rho_m, what.v_max_m_s, greatest_age_s);
-  avoidance::SearchDistances source(rig, what, settings.parts.size());  // YOURS: a budget of time (docs/avoidance.md)
+  // The first part, the tip, gets the direction that it is repelled along. YOURS: a budget of time (docs/avoidance.md).
+  search::SearchEvaluator evaluator(rig, what, {.directions = 1});
 
   // What takes the arm out of the images: its positions of the last 2 s, and a padding. YOURS: the padding is no less
   // than the sensor's margin (intake.missing_padding_m()) and the errors of calibration and model, or the arm stops for
@@ -100,16 +101,16 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   // YOURS: the arm's driver, a class derived from control::RobotPort: read() and write() (docs/avoidance.md).
   control::SimulatedArm arm(limits, period_s, q_start);
   avoidance::HistoryPort port(arm, history);
-  avoidance::AvoidanceLoop loop(robot, task, source, settings);
+  avoidance::AvoidanceLoop loop(robot, task, evaluator, settings);
   bool working = loop.start(port);
   Vector3d tip_before_world = start_world;
   const auto print = [&] {
-    const auto distance_m = [](const auto& answer) { return answer.obstacle.distance_m.value_or(0); };
+    const auto distance_m = [](const Answer& answer) { return control::obstacle_of(answer).distance_m.value_or(0); };
     const auto nearer = [&](const auto& a, const auto& b) { return distance_m(a) < distance_m(b); };
     const auto nearest = std::min_element(loop.answers().begin(), loop.answers().end(), nearer);
     const std::size_t link = settings.parts[static_cast<std::size_t>(nearest - loop.answers().begin())].link;
     std::printf("%.1f s  ", loop.report().time_s);
-    if (!nearest->obstacle.distance_m) {
+    if (std::isnan(nearest->distance_now_m)) {
       std::printf("no images yet, distances are unknown");
     } else if (distance_m(*nearest) < rho_m) {  // "measured" is a surface, the other states are space not seen free
       std::printf("%s is %.3f m from the nearest obstacle (%s)", model.links()[link].name.c_str(), distance_m(*nearest),
@@ -136,7 +137,7 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
       const DepthImage first = image(rig.cameras[0], loop.parts_world(), ball_world);
       const DepthImage second = image(rig.cameras[1], loop.parts_world(), ball_world);
       const std::array<Frame, 2> seen{Frame{depth_view(first), {}, now_s}, {depth_view(second), {}, now_s}};
-      working = source.take(intake.frames(seen)) && working;
+      working = update_all(evaluator, intake.frames(seen)).taken() && working;
     }
     arm.advance();
   }

@@ -10,7 +10,6 @@
 //            update() runs on the same evaluator. Two evaluators share nothing.
 // Errors     construction and depth_view() throw depthgrid::Error; update() and evaluate() are noexcept, allocate
 //            nothing and take no lock. What could not be answered has a state that says so, never a magic number.
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -18,7 +17,7 @@
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 
 namespace {
 
@@ -62,19 +61,19 @@ int run() {
   settings.sensor.quadratic_per_m = 0.002;
   depthgrid::grid::GridEvaluator evaluator(rig, 0, quantisation, settings);
 
-  // 3. For every exposure: one frame a camera, in the rig's order. The view is on your buffer.
+  // 3. For every exposure of every camera. The view is on your buffer.
   const std::vector<std::uint16_t> pixels = image_from_driver();
-  std::array<depthgrid::Frame, 1> frames;
-  frames[0].depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
-  frames[0].time_s = 0.0;  // middle of the exposure, one clock for all cameras
-  if (!evaluator.update(frames)) {
-    std::puts("a camera gave no usable frame: all it should see counts as not free");
+  depthgrid::Frame frame;
+  frame.depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
+  frame.time_s = 0.0;  // middle of the exposure, one clock for all cameras
+  if (const depthgrid::FrameUpdate update = evaluator.update(0, frame); !update.taken()) {
+    std::printf("no usable frame, all the camera should see counts as not free: %s\n", update.reason);
   }
 
   // 4. Any number of points on the robot, world frame.
   for (const Eigen::Vector3d& p_world :
        {Eigen::Vector3d{1.3, 0.0, 1.0}, Eigen::Vector3d{1.9, 0.0, 1.0}, Eigen::Vector3d{1.2, 0.5, 1.2}}) {
-    const depthgrid::Proximity answer = evaluator.evaluate(p_world).nearest;
+    const depthgrid::Proximity answer = evaluator.distance(depthgrid::Capsule::point(p_world)).nearest;
     const auto state = depthgrid::to_string(answer.state);
     std::printf("(%.2f %.2f %.2f)  %.3f m  %.*s\n", p_world.x(), p_world.y(), p_world.z(), answer.distance_m,
                 static_cast<int>(state.size()), state.data());

@@ -13,6 +13,7 @@
 
 #include "depthgrid/avoidance/avoidance_loop.hpp"
 #include "depthgrid/avoidance/model_limits.hpp"
+#include "depthgrid/avoidance/nothing_near.hpp"
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
 
@@ -71,8 +72,8 @@ int run() {
   settings.controller.posture_rad = q_start;
 
   Circle circle(robot.link_poses({q_start.data(), 7})[tip]);
-  avoidance::NoDistances source;  // YOURS: SearchDistances, fed by a FrameIntake
-  avoidance::AvoidanceLoop loop(robot, circle, source, settings);
+  avoidance::NothingNear evaluator;  // YOURS: search::SearchEvaluator, fed by a FrameIntake
+  avoidance::AvoidanceLoop loop(robot, circle, evaluator, settings);
   control::SimulatedArm arm(settings.controller.limits, settings.controller.period_s, q_start);  // YOURS: a RobotPort
   bool working = loop.start(arm);
   for (int k = 0; k <= 1000; ++k) {

@@ -1,4 +1,5 @@
-// Quick start: depth images from your own driver in, distances of robot links out. No file, no allocation in the loop.
+// Quick start: depth images from your own driver in, distances of robot links out, with threads. No file, no allocation
+// in the loop. With one thread SearchEvaluator does what store and search do here (README.md).
 //
 //   c++ -std=c++20 -O2 quickstart.cpp $(pkg-config --cflags eigen3) -ldepthgrid_search -ldepthgrid_core -lhwy
 //
@@ -78,18 +79,17 @@ int run() {
   depthgrid::Frame frame;
   frame.depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
   frame.time_s = 0.0;  // middle of the exposure, one clock for all cameras
-  if (store.update(0, frame) != views::UpdateResult::taken) {
-    const char* reason = store.why_unusable(0, frame);  // null: more snapshots are held than the store was made for
-    std::printf("frame not taken: %s\n", reason != nullptr ? reason : "all buffers are held");
+  if (const depthgrid::FrameUpdate update = store.update(0, frame); !update.taken()) {
+    std::printf("frame not taken: %s\n", update.reason);
   }
 
   // 5. Whole links of the robot at once: points, spheres and capsules, world frame.
   const std::array<depthgrid::Capsule, 3> links = {depthgrid::Capsule{{0.7, 0.0, 0.9}, {1.0, 0.0, 1.0}, 0.06},
                                                    depthgrid::Capsule::sphere({1.1, 0.0, 1.0}, 0.08),
-                                                   Capsule::point({1.9, 0.0, 1.0})};
-  std::array<search::Answer, 3> answers;
+                                                   depthgrid::Capsule::point({1.9, 0.0, 1.0})};
+  std::array<depthgrid::Answer, 3> answers;
   search.distances(store.snapshot(), links, answers);
-  for (const search::Answer& answer : answers) {
+  for (const depthgrid::Answer& answer : answers) {
     const auto state = depthgrid::to_string(answer.nearest.state);
     std::printf("%.3f m  %.*s, known to %.3f m\n", answer.nearest.distance_m, static_cast<int>(state.size()),
                 state.data(), answer.nearest.known_to_m);

@@ -6,11 +6,11 @@
 
 namespace depthgrid::avoidance {
 
-AvoidanceLoop::AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceSource& source,
+AvoidanceLoop::AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceEvaluator& evaluator,
                              const LoopSettings& settings)
     : robot_(std::move(robot)),
       task_(task),
-      source_(source),
+      evaluator_(evaluator),
       settings_(settings),
       controller_(settings.controller),
       T_world_link_(robot_.model.links().size(), Pose::Identity()),
@@ -56,9 +56,11 @@ void AvoidanceLoop::evaluate(double now_s) noexcept {
   if (!report_.evaluated) {
     return;
   }
-  source_.evaluate(parts_world_, now_s, answers_);
+  evaluator_.evaluate(parts_world_, now_s, answers_);
   for (std::size_t i = 0; i < answers_.size(); ++i) {
-    at_link_[i] = T_world_link_[settings_.parts[i].link].inverse(Eigen::Isometry) * answers_[i].at_world;
+    const Eigen::Vector3d& on_axis_world = answers_[i].on_axis_world;
+    const Eigen::Vector3d& at_world = on_axis_world.allFinite() ? on_axis_world : parts_world_[i].a;
+    at_link_[i] = T_world_link_[settings_.parts[i].link].inverse(Eigen::Isometry) * at_world;
   }
 }
 
@@ -83,11 +85,13 @@ bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
   for (std::size_t i = first; i < settings_.parts.size(); ++i) {
     const std::size_t link = settings_.parts[i].link;
     jacobian(link, T_world_link_[link] * at_link_[i], body_[i - first].jacobian);
-    body_[i - first].obstacle = answers_[i].obstacle;
+    body_[i - first].obstacle = control::obstacle_of(answers_[i]);
   }
   report_.time_s = now_s;
-  report_.output = controller_.cycle(
-      {.task = task_.rows(tip_), .end_effector = answers_[0].obstacle, .body = body_, .further_tasks = {}});
+  report_.output = controller_.cycle({.task = task_.rows(tip_),
+                                      .end_effector = control::obstacle_of(answers_[0]),
+                                      .body = body_,
+                                      .further_tasks = {}});
   ++cycles_;
   return port.write(report_.output.command) && working;
 }

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "depthgrid/avoidance/distance_source.hpp"
 #include "depthgrid/control/controller.hpp"
 #include "depthgrid/control/motion_task.hpp"
 #include "depthgrid/control/robot_port.hpp"
+#include "depthgrid/core/distance_evaluator.hpp"
 #include "depthgrid/robot/placed_robot.hpp"
 #include "depthgrid/robot/robot_parts.hpp"
 
@@ -32,12 +32,12 @@ struct CycleReport {
   control::CycleOutput output;
 };
 
-/// One thread. cycle() neither allocates (as long as the source does not) nor locks nor throws.
+/// One thread. cycle() neither allocates (as long as the evaluator does not) nor locks nor throws.
 class AvoidanceLoop {
  public:
-  /// Task and source must outlive it. Throws Error when the controller's settings are invalid, there is no part, a
+  /// Task and evaluator must outlive it. Throws Error when the controller's settings are invalid, there is no part, a
   /// part's link is none, or the limits are not those of the model's joints in number.
-  AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceSource& source,
+  AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceEvaluator& evaluator,
                 const LoopSettings& settings);
 
   /// Takes the robot's state as the beginning. False when there is none or it is not finite: cycle() then does nothing.
@@ -50,7 +50,7 @@ class AvoidanceLoop {
 
   [[nodiscard]] const CycleReport& report() const noexcept { return report_; }
   /// Of the last evaluation, one a part, and where the parts are now.
-  [[nodiscard]] std::span<const PartAnswer> answers() const noexcept { return answers_; }
+  [[nodiscard]] std::span<const Answer> answers() const noexcept { return answers_; }
   [[nodiscard]] std::span<const Capsule> parts_world() const noexcept { return parts_world_; }
   [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }
 
@@ -60,7 +60,7 @@ class AvoidanceLoop {
 
   robot::PlacedRobot robot_;
   control::MotionTask& task_;
-  DistanceSource& source_;
+  DistanceEvaluator& evaluator_;
   LoopSettings settings_;
   control::Controller controller_;
   bool started_ = false;
@@ -68,7 +68,7 @@ class AvoidanceLoop {
   control::JointState state_;
   std::vector<Pose> T_world_link_;
   std::vector<Capsule> parts_world_;
-  std::vector<PartAnswer> answers_;
+  std::vector<Answer> answers_;
   std::vector<Eigen::Vector3d> at_link_;  ///< of the answers, in the frames of their links
   std::vector<control::BodyPoint> body_;
   control::EndEffector tip_;

@@ -13,19 +13,25 @@ std::optional<Eigen::Vector3d> unit_vector(const Eigen::Vector3d& direction) noe
   return direction / length;
 }
 
-Obstacle obstacle_of(const Proximity& answer, const Eigen::Vector3d& hybrid_direction_world, double elapsed_s,
-                     double v_max_m_s) noexcept {
+Obstacle obstacle_of(const Answer& answer) noexcept {
   Obstacle obstacle;
-  const double distance_m = lower_bound_after(answer, elapsed_s, v_max_m_s);
-  if (!std::isfinite(distance_m)) {
+  if (!std::isfinite(answer.distance_now_m)) {
     return obstacle;
   }
-  obstacle.distance_m = distance_m;
-  obstacle.direction_world = unit_vector(answer.direction_world);
-  if (hybrid_direction_world.allFinite()) {
-    obstacle.hybrid_direction_world = hybrid_direction_world;
+  obstacle.distance_m = answer.distance_now_m;
+  obstacle.direction_world = unit_vector(answer.nearest.direction_world);
+  if (answer.hybrid_direction_world.allFinite()) {
+    obstacle.hybrid_direction_world = answer.hybrid_direction_world;
   }
   return obstacle;
+}
+
+Obstacle obstacle_of(const Proximity& answer, const Eigen::Vector3d& hybrid_direction_world, double elapsed_s,
+                     double v_max_m_s) noexcept {
+  return obstacle_of({.nearest = answer,
+                      .distance_now_m = lower_bound_after(answer, elapsed_s, v_max_m_s),
+                      .on_axis_world = {},
+                      .hybrid_direction_world = hybrid_direction_world});
 }
 
 }  // namespace depthgrid::control

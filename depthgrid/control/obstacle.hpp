@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "depthgrid/core/proximity.hpp"
+#include "depthgrid/core/answer.hpp"
 
 namespace depthgrid::control {
 
@@ -19,6 +19,9 @@ struct Obstacle {
   /// it was not asked for.
   Eigen::Vector3d hybrid_direction_world = Eigen::Vector3d::Zero();
 };
+
+/// At the time that the evaluator was asked for.
+[[nodiscard]] Obstacle obstacle_of(const Answer& answer) noexcept;
 
 /// The obstacle of an answer that is `elapsed_s` old while obstacles move at most at `v_max_m_s`: the distance is
 /// lower_bound_after() of the answer. With elapsed_s = 0 and v_max_m_s = 0 it is the answer's own, as in the letter.

@@ -17,11 +17,11 @@ namespace depthgrid {
 struct RigCamera {
   std::string id;
   PinholeCamera intrinsics;
-  Distortion distortion;
+  Distortion distortion{};
   double metres_per_unit = 0.001;  ///< of 16-bit depth images
-  MeasurementRule rule;
+  MeasurementRule rule{};
   Pose T_world_camera = Pose::Identity();
-  std::string sensor;                      ///< the built-in sensor model that `margins` started from; empty: none
+  std::string sensor{};                    ///< the built-in sensor model that `margins` started from; empty: none
   std::optional<CameraMargins> margins{};  ///< none: nothing was said about the camera's errors
 };
 
@@ -29,7 +29,7 @@ struct RigCamera {
 struct Rig {
   std::string name;
   std::vector<RigCamera> cameras;
-  std::optional<Pose> T_floor_world;
+  std::optional<Pose> T_floor_world{};
 };
 
 /// Largest accepted coordinate of a camera, metres: beyond it double rounding outgrows the guards of the evaluators.

@@ -14,7 +14,7 @@ namespace depthgrid::robot {
 /// A capsule fixed to a link of a RobotModel, in the link's frame.
 struct LinkCapsule {
   std::size_t link = 0;
-  Capsule capsule;
+  Capsule capsule{};
 };
 
 struct CapsuleOptions {

@@ -13,22 +13,21 @@
 namespace depthgrid::search {
 namespace {
 
-/// Primitives farther apart than this are not searched together, metres.
+/// Capsules farther apart than this are not searched together, metres.
 constexpr double kGroupExtent = 2.0;
 /// Open cubes that one search may hold.
 constexpr std::size_t kFrontierCapacity = std::size_t{1} << 17;
 
-bool is_valid(const Capsule& primitive) noexcept {
-  return primitive.a.allFinite() && primitive.b.allFinite() && std::isfinite(primitive.radius_m) &&
-         primitive.radius_m >= 0;
+bool is_valid(const Capsule& capsule) noexcept {
+  return capsule.a.allFinite() && capsule.b.allFinite() && std::isfinite(capsule.radius_m) && capsule.radius_m >= 0;
 }
 
 }  // namespace
 
-/// What is known of a primitive before the search, and how far it has to reach.
+/// What is known of a capsule before the search, and how far it has to reach.
 struct Search::Plan {
   std::size_t answer = 0;  ///< index in the call
-  Capsule primitive;
+  Capsule capsule;
   Border border;                ///< of W, from the end of the axis that is nearer to it
   Eigen::Vector3d border_axis;  ///< that end
   double limit_m = 0;           ///< from the axis
@@ -38,7 +37,7 @@ struct Search::Plan {
 struct Search::State {
   State() : frontier(kFrontierCapacity) {}
 
-  void call(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
+  void call(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
             const Budget& budget, Count* count, bool with_direction) noexcept;
   void group(const views::Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
              Allowance& allowance, bool with_direction) noexcept;
@@ -50,21 +49,21 @@ struct Search::State {
 };
 
 /// Fills in what needs no search. False when that is all there is to say.
-bool Search::plan(const views::Snapshot& snapshot, const Capsule& primitive, Answer& result, Plan& plan) noexcept {
+bool Search::plan(const views::Snapshot& snapshot, const Capsule& capsule, Answer& result, Plan& plan) noexcept {
   result = Answer{};
-  if (!is_valid(primitive)) {
+  if (!is_valid(capsule)) {
     return false;
   }
   Proximity& nearest = result.nearest;
   nearest.stale = snapshot.stale();
   const views::Settings& s = snapshot.settings();
   // W is convex: of a segment's distances to its border the least is at an end.
-  const Border at_a = border_of_space(snapshot, primitive.a);
-  const Border at_b = border_of_space(snapshot, primitive.b);
+  const Border at_a = border_of_space(snapshot, capsule.a);
+  const Border at_b = border_of_space(snapshot, capsule.b);
   const bool a_first = at_a.distance_m <= at_b.distance_m;
-  plan.primitive = primitive;
+  plan.capsule = capsule;
   plan.border = a_first ? at_a : at_b;
-  plan.border_axis = a_first ? primitive.a : primitive.b;
+  plan.border_axis = a_first ? capsule.a : capsule.b;
   const bool outside_counts = s.policies.outside == views::Policy::obstacle;
   if (!(plan.border.distance_m >= 0)) {
     nearest.state = ProximityState::outside;
@@ -77,9 +76,9 @@ bool Search::plan(const views::Snapshot& snapshot, const Capsule& primitive, Ans
     return false;
   }
   if (!outside_counts) {
-    nearest.known_to_m = std::max(0.0, plan.border.distance_m - primitive.radius_m);
+    nearest.known_to_m = std::max(0.0, plan.border.distance_m - capsule.radius_m);
   }
-  plan.limit_m = s.rho_m + primitive.radius_m;
+  plan.limit_m = s.rho_m + capsule.radius_m;
   plan.border_bounds = outside_counts && plan.border.distance_m < plan.limit_m;
   plan.limit_m = plan.border_bounds ? plan.border.distance_m : plan.limit_m;
   return true;
@@ -90,7 +89,7 @@ void Search::finish(const views::Snapshot& snapshot, const Plan& plan, const Nea
                     const Eigen::Vector3d& origin_world, Answer& result) noexcept {
   Proximity& nearest = result.nearest;
   nearest.budget = found.stopped;
-  nearest.distance_m = std::max(0.0, found.distance_m - plan.primitive.radius_m - kRounding);
+  nearest.distance_m = std::max(0.0, found.distance_m - plan.capsule.radius_m - kRounding);
   if (found.found && !found.stopped) {
     nearest.nearest_world = found.in_obstacle + origin_world;
     result.on_axis_world = found.on_axis + origin_world;
@@ -119,17 +118,17 @@ void Search::finish(const views::Snapshot& snapshot, const Plan& plan, const Nea
 void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan> group_plans, std::span<Answer> answers,
                           Descent& descent, Allowance& allowance, bool with_direction) noexcept {
   const double rho_m = snapshot.settings().rho_m;
-  Eigen::Vector3d low = group_plans.front().primitive.a;
+  Eigen::Vector3d low = group_plans.front().capsule.a;
   Eigen::Vector3d high = low;
   double reach_m = 0;
   for (const Plan& p : group_plans) {
-    low = low.cwiseMin(p.primitive.a).cwiseMin(p.primitive.b);
-    high = high.cwiseMax(p.primitive.a).cwiseMax(p.primitive.b);
-    reach_m = std::max(reach_m, rho_m + p.primitive.radius_m);
+    low = low.cwiseMin(p.capsule.a).cwiseMin(p.capsule.b);
+    high = high.cwiseMax(p.capsule.a).cwiseMax(p.capsule.b);
+    reach_m = std::max(reach_m, rho_m + p.capsule.radius_m);
   }
   descent.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + reach_m);
   for (const Plan& p : group_plans) {
-    descent.add(p.primitive, p.limit_m);
+    descent.add(p.capsule, p.limit_m);
   }
   descent.find(allowance);
   std::uint32_t wanted = 0;
@@ -152,31 +151,31 @@ void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan>
   }
 }
 
-void Search::State::call(const views::Snapshot& snapshot, std::span<const Capsule> primitives,
-                         std::span<Answer> answers, const Budget& budget, Count* count, bool with_direction) noexcept {
+void Search::State::call(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
+                         const Budget& budget, Count* count, bool with_direction) noexcept {
   Count own;
   Descent descent(snapshot, query, frontier, count != nullptr ? *count : own);
-  std::int64_t nodes_left = budget.nodes > 0 ? budget.nodes : std::numeric_limits<std::int64_t>::max();
+  std::int64_t nodes_left = std::max(std::int64_t{0}, budget.nodes.value_or(std::numeric_limits<std::int64_t>::max()));
   Allowance allowance;
-  if (budget.time_s > 0) {
-    allowance.end_at(std::chrono::steady_clock::now() +
-                     std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                         std::chrono::duration<double>(std::min(budget.time_s, 1e6))));
+  if (budget.time_s) {
+    const double time_s = *budget.time_s > 0 ? std::min(*budget.time_s, 1e6) : 0.0;
+    allowance.end_at(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                            std::chrono::duration<double>(time_s)));
   }
-  const std::size_t both = std::min(primitives.size(), answers.size());
+  const std::size_t both = std::min(capsules.size(), answers.size());
   std::size_t next = 0;
   while (next < both) {
-    // A group: primitives in the order given, as long as they are near to each other.
+    // A group: capsules in the order given, as long as they are near to each other.
     const std::size_t first = next;
     std::size_t size = 0;
     Eigen::Vector3d low = Eigen::Vector3d::Constant(1e30);
     Eigen::Vector3d high = -low;
     for (; next < both && size < kGroup; ++next) {
-      if (!plan(snapshot, primitives[next], answers[next], plans[size])) {
+      if (!plan(snapshot, capsules[next], answers[next], plans[size])) {
         continue;
       }
-      const Eigen::Vector3d to_low = low.cwiseMin(primitives[next].a).cwiseMin(primitives[next].b);
-      const Eigen::Vector3d to_high = high.cwiseMax(primitives[next].a).cwiseMax(primitives[next].b);
+      const Eigen::Vector3d to_low = low.cwiseMin(capsules[next].a).cwiseMin(capsules[next].b);
+      const Eigen::Vector3d to_high = high.cwiseMax(capsules[next].a).cwiseMax(capsules[next].b);
       if (size > 0 && (to_high - to_low).maxCoeff() > kGroupExtent) {
         break;
       }
@@ -204,14 +203,14 @@ Search::~Search() = default;
 Search::Search(Search&&) noexcept = default;
 Search& Search::operator=(Search&&) noexcept = default;
 
-void Search::distances(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
+void Search::distances(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
                        const Budget& budget, Count* count) noexcept {
-  state_->call(snapshot, primitives, answers, budget, count, false);
+  state_->call(snapshot, capsules, answers, budget, count, false);
 }
 
-void Search::hybrid(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
+void Search::hybrid(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
                     const Budget& budget, Count* count) noexcept {
-  state_->call(snapshot, primitives, answers, budget, count, true);
+  state_->call(snapshot, capsules, answers, budget, count, true);
 }
 
 }  // namespace depthgrid::search

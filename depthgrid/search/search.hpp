@@ -7,17 +7,17 @@
 // Answers never exceed D(P). Tight to r: the nearest point w of an answer below rho has |w - P| = answer (to 1e-5 m)
 // and lies within e_k(w) + r of N_k minus R_k for every camera k.
 //
-// A best-first search over the cubes of an octree around the primitive: a cube is dropped when one camera alone frees
+// A best-first search over the cubes of an octree around the capsule: a cube is dropped when one camera alone frees
 // it with everything that errors of pose and time may bring into it.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "depthgrid/core/answer.hpp"
 #include "depthgrid/core/capsule.hpp"
-#include "depthgrid/core/proximity.hpp"
 #include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::search {
@@ -25,25 +25,11 @@ namespace depthgrid::search {
 /// Subtracted from every answer: covers the rounding of single-precision geometry near the cameras.
 inline constexpr double kRounding = 1e-5;
 
-/// One primitive's answer.
-struct Answer {
-  /// distance_m: from the primitive's surface to O, 0 when they touch; lower bound when `budget`. nearest_world: the
-  /// nearest point of O (to the resolution). direction_world: unit vector from the primitive's axis to it.
-  Proximity nearest;
-  /// The axis' point nearest to nearest.nearest_world; the point itself for a point or a sphere. NaN where there is no
-  /// nearest point.
-  Eigen::Vector3d on_axis_world = Eigen::Vector3d::Constant(Proximity::kNaN);
-  /// Only after hybrid(): unit vector n + b (t - (t.n) n), normalised, with n the nearest direction and t the mean of
-  /// the unit vectors to all obstacle space within rho, weighted by the repulsion v(D). Its product with n is at least
-  /// 0.707. Zero when there is no obstacle within rho or the primitive touches it.
-  Eigen::Vector3d hybrid_direction_world = Eigen::Vector3d::Zero();
-};
-
-/// Stops a call early. 0: no limit. When it runs out the answers that are not finished hold the lower bound reached
-/// so far, with nearest.budget set.
+/// Stops a call early. When it runs out the answers that are not finished hold the lower bound reached so far, with
+/// nearest.budget set. Nothing: no limit.
 struct Budget {
-  std::int64_t nodes = 0;  ///< octree cells that the call may open, over all primitives
-  double time_s = 0;       ///< wall clock; looked at every few microseconds
+  std::optional<std::int64_t> nodes{};  ///< octree cells that the call may open, over all capsules
+  std::optional<double> time_s{};       ///< wall clock; looked at every few microseconds
 };
 
 /// Work done, for figures.
@@ -65,20 +51,21 @@ class Search {
   Search(const Search&) = delete;
   Search& operator=(const Search&) = delete;
 
-  /// Distances of many primitives. answers.size() should equal primitives.size(); answers without a primitive, and
-  /// those of primitives that are not finite or have a negative radius, are not_evaluated. Primitives beside each
-  /// other in the call that are near to each other are searched together. Does not allocate, lock or throw.
-  void distances(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
+  /// Distances of many capsules. answers.size() should equal capsules.size(); answers without a capsule, and those of
+  /// capsules that are not finite or have a negative radius, are not_evaluated. Capsules beside each other in the call
+  /// that are near to each other are searched together. No time is asked for: distance_now_m stays NaN. Does not
+  /// allocate, lock or throw.
+  void distances(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
                  const Budget& budget = {}, Count* count = nullptr) noexcept;
 
   /// The same with hybrid_direction_world, equation (11) in its corrected form.
-  void hybrid(const views::Snapshot& snapshot, std::span<const Capsule> primitives, std::span<Answer> answers,
+  void hybrid(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
               const Budget& budget = {}, Count* count = nullptr) noexcept;
 
  private:
   struct State;
   struct Plan;
-  [[nodiscard]] static bool plan(const views::Snapshot& snapshot, const Capsule& primitive, Answer& result,
+  [[nodiscard]] static bool plan(const views::Snapshot& snapshot, const Capsule& capsule, Answer& result,
                                  Plan& plan) noexcept;
   static void finish(const views::Snapshot& snapshot, const Plan& plan, const Nearest& found,
                      const Eigen::Vector3d& origin_world, Answer& result) noexcept;

@@ -23,6 +23,8 @@ constexpr int kAttempts = 100;
 /// whose time is not known frees nothing.
 constexpr double kUnboundedMotion = 1e9;
 
+constexpr FrameUpdate kNoCamera{UpdateResult::unusable, "the rig has no such camera"};
+
 /// The index of every camera's newest buffer, four bits a camera.
 std::size_t slot_of(std::uint64_t slots, std::size_t camera) noexcept {
   return static_cast<std::size_t>(slots >> (4 * camera)) & 15U;
@@ -100,19 +102,27 @@ struct ViewStore::State {
   }
 
   /// With a pose that is none the camera stays where it was.
-  UpdateResult update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
+  FrameUpdate update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
     const std::size_t slot = free_slot(camera);
     std::vector<View>& views = cameras[camera].views;
     if (slot == views.size()) {
-      return UpdateResult::dropped;
+      return {UpdateResult::dropped, "held snapshots occupy every buffer of this camera"};
     }
-    // Does not throw or allocate, because is_valid() has checked the same rules.
-    const bool taken = is_valid(T_world_camera) ? views[slot].update(frame, pose_from_matrix(T_world_camera.matrix()))
-                                                : views[slot].update(Frame{}, newest_view(camera).T_world_camera());
+    const char* reason = views[slot].why_unusable(frame);
+    if (is_valid(T_world_camera)) {
+      // Does not throw or allocate, because is_valid() has checked the same rules.
+      (void)views[slot].update(frame, pose_from_matrix(T_world_camera.matrix()));
+    } else {
+      (void)views[slot].update(Frame{}, newest_view(camera).T_world_camera());
+      reason = reason != nullptr
+                   ? reason
+                   : "the pose is not a rigid transform: not finite, not a rotation, or farther than the largest "
+                     "translation";
+    }
     std::uint64_t slots = newest.load();
     while (!newest.compare_exchange_weak(slots, with_slot(slots, camera, slot))) {
     }
-    return taken ? UpdateResult::taken : UpdateResult::unusable;
+    return {reason == nullptr ? UpdateResult::taken : UpdateResult::unusable, reason};
   }
 
   [[nodiscard]] std::uint64_t acquire() const noexcept {
@@ -147,26 +157,13 @@ ViewStore::ViewStore(const Rig& rig, const Settings& settings, int held_snapshot
     : state_(std::make_unique<State>(rig, settings, held_snapshots)) {}
 ViewStore::~ViewStore() = default;
 
-UpdateResult ViewStore::update(std::size_t camera, const Frame& frame) noexcept {
+FrameUpdate ViewStore::update(std::size_t camera, const Frame& frame) noexcept {
   return camera < state_->cameras.size() ? state_->update(camera, frame, state_->rig.cameras[camera].T_world_camera)
-                                         : UpdateResult::unusable;
+                                         : kNoCamera;
 }
 
-UpdateResult ViewStore::update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
-  return camera < state_->cameras.size() ? state_->update(camera, frame, T_world_camera) : UpdateResult::unusable;
-}
-
-// What makes a frame usable is the same for every buffer of a camera, and never changes.
-const char* ViewStore::why_unusable(std::size_t camera, const Frame& frame) const noexcept {
-  return camera < state_->cameras.size() ? state_->cameras[camera].views[0].why_unusable(frame)
-                                         : "the rig has no such camera";
-}
-
-const char* ViewStore::why_unusable(std::size_t camera, const Frame& frame, const Pose& T_world_camera) const noexcept {
-  const char* reason = why_unusable(camera, frame);
-  return reason == nullptr && !is_valid(T_world_camera)
-             ? "the pose is none: not finite, not a rotation, or farther than the largest translation"
-             : reason;
+FrameUpdate ViewStore::update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
+  return camera < state_->cameras.size() ? state_->update(camera, frame, T_world_camera) : kNoCamera;
 }
 
 Snapshot ViewStore::snapshot() const noexcept { return Snapshot(*state_); }

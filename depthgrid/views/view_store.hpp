@@ -1,11 +1,12 @@
 // The newest image of every camera, shared between the threads that deliver images and those that ask.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include "depthgrid/core/frame.hpp"
+#include "depthgrid/core/frame_update.hpp"
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/views/settings.hpp"
 #include "depthgrid/views/view.hpp"
@@ -13,12 +14,6 @@
 namespace depthgrid::views {
 
 class Snapshot;
-
-enum class UpdateResult : std::uint8_t {
-  taken,     ///< the frame is the camera's newest
-  unusable,  ///< taken as "no measurement anywhere"; why_unusable() says why
-  dropped,   ///< held snapshots occupy every buffer of this camera: the frame before stays the newest
-};
 
 /// Holds a few prepared images a camera. Neither update() nor snapshot() locks, allocates or throws; both are
 /// lock-free. update(): one thread at a time for each camera; different cameras may update at the same time, and any
@@ -34,14 +29,10 @@ class ViewStore {
   ViewStore& operator=(const ViewStore&) = delete;
 
   /// Takes a frame of one camera. With `T_world_camera` the camera has moved; without it stands where the rig says.
-  /// `camera` beyond the rig is `unusable`.
-  [[nodiscard]] UpdateResult update(std::size_t camera, const Frame& frame) noexcept;
-  [[nodiscard]] UpdateResult update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept;
-  /// Why update() answers `unusable`, as a text that lives for ever: no data, wrong size or scale, rows that overlap,
-  /// half a robot view, a pose that is none, no such camera. Null: the frame is usable. Any thread, at any time.
-  [[nodiscard]] const char* why_unusable(std::size_t camera, const Frame& frame) const noexcept;
-  [[nodiscard]] const char* why_unusable(std::size_t camera, const Frame& frame,
-                                         const Pose& T_world_camera) const noexcept;
+  /// Unusable: no data, wrong size or scale, rows that overlap, half a robot view, a pose that is not a rigid
+  /// transform, no such camera. Dropped: held snapshots occupy every buffer of this camera.
+  [[nodiscard]] FrameUpdate update(std::size_t camera, const Frame& frame) noexcept;
+  [[nodiscard]] FrameUpdate update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept;
 
   /// The newest image of every camera, all published at one instant. Cameras without a frame so far free nothing.
   /// t_ref is the newest exposure. The store must outlive the snapshot.

@@ -8,9 +8,8 @@
 #include "depthgrid/files/control_points.hpp"
 #include "depthgrid/files/png.hpp"
 #include "depthgrid/files/rig_file.hpp"
-#include "depthgrid/search/search.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 
-namespace search = depthgrid::search;
 namespace views = depthgrid::views;
 
 int main() try {
@@ -27,20 +26,17 @@ int main() try {
   settings.policies.robot_pockets = views::Policy::obstacle;
   settings.margins = depthgrid::camera_margins(file.rig);
   settings.v_max_m_s = 2.0;
-  views::ViewStore store(file.rig, settings);
-  search::Search search;
+  depthgrid::search::SearchEvaluator cell(file.rig, settings);
 
   const std::vector<std::uint16_t> pixels(320 * 240, 2000);  // a wall at 2 m
   depthgrid::Frame frame;
   frame.depth = depthgrid::depth_view(pixels, 320, 240, file.rig.cameras[0].metres_per_unit);
-  if (store.update(0, frame) != views::UpdateResult::taken) {
-    const char* reason = store.why_unusable(0, frame);
-    throw std::runtime_error(reason != nullptr ? reason : "all buffers are held");
+  if (const depthgrid::FrameUpdate update = cell.update(0, frame); !update.taken()) {
+    throw std::runtime_error(update.reason);
   }
 
   const depthgrid::files::ControlPoint point = depthgrid::files::parse_control_point("0,0,1.8", "wrist");
-  search::Answer answer;
-  search.distances(store.snapshot(), {&point.capsule, 1}, {&answer, 1});
+  const depthgrid::Answer answer = cell.distance(point.capsule);
   std::cout << point.id << ": " << answer.nearest.distance_m << " m, " << depthgrid::to_string(answer.nearest.state)
             << '\n';
   return 0;

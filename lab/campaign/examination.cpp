@@ -65,7 +65,7 @@ void note(Tally& tally, const SearchProblem& problem, std::size_t query, const s
 }
 
 /// Of one query; none where it touches an obstacle or has no distance.
-void add_shortfall(const SearchProblem& problem, std::size_t query, const search::Answer& answer, Tally& tally) {
+void add_shortfall(const SearchProblem& problem, std::size_t query, const Answer& answer, Tally& tally) {
   const reference::Interval interval = problem.oracle->distance(reference::to_reference(problem.primitives[query]));
   const double hi_m = interval.hi_m.value_or(problem.settings.rho_m);
   if (interval.point_outside || !(hi_m > 0)) {
@@ -86,11 +86,11 @@ void examine_budget(const SearchProblem& problem, reference::SearchRun& run, Tal
   search::Budget budget;
   budget.nodes = static_cast<std::int64_t>(std::pow(10.0, random.uniform(0, 4.5)));
   const AnswerCheck check(problem);
-  const std::vector<search::Answer> answers = run.distances(budget);
+  const std::vector<Answer> answers = run.distances(budget);
   for (std::size_t q = 0; q < answers.size(); ++q) {
     ++tally.counts["budget: queries"];
     tally.counts["budget: stopped"] += answers[q].nearest.budget ? 1 : 0;
-    const std::string nodes = "of " + std::to_string(budget.nodes) + " nodes, ";
+    const std::string nodes = "of " + std::to_string(*budget.nodes) + " nodes, ";
     for (const auto& finding :
          {check.form(problem.primitives[q], answers[q]), check.soundness(problem.primitives[q], answers[q]).finding}) {
       if (finding) {
@@ -103,7 +103,7 @@ void examine_budget(const SearchProblem& problem, reference::SearchRun& run, Tal
 }
 
 /// What is wrong with a direction, if anything.
-std::string wrong_direction(const search::Answer& answer, const search::Answer& without, double blend) {
+std::string wrong_direction(const Answer& answer, const Answer& without, double blend) {
   if (answer.nearest.distance_m != without.nearest.distance_m &&
       !(std::isnan(answer.nearest.distance_m) && std::isnan(without.nearest.distance_m))) {
     return "the distance differs";
@@ -122,10 +122,10 @@ std::string wrong_direction(const search::Answer& answer, const search::Answer& 
   return text.str();
 }
 
-void examine_directions(SearchProblem& problem, std::span<const search::Answer> without, Tally& tally) {
+void examine_directions(SearchProblem& problem, std::span<const Answer> without, Tally& tally) {
   reference::Random random(problem.options.seed * 0x9E3779B97F4A7C15U + 7);
   problem.settings.direction_blend = random.chance(0.5) ? 1.0 : random.uniform(0, 1);
-  const std::vector<search::Answer> answers = reference::SearchRun(problem).hybrid();
+  const std::vector<Answer> answers = reference::SearchRun(problem).hybrid();
   for (std::size_t q = 0; q < answers.size(); ++q) {
     ++tally.counts["direction: queries"];
     tally.counts["direction: given"] += answers[q].hybrid_direction_world.isZero(0) ? 0 : 1;
@@ -139,7 +139,7 @@ void examine_directions(SearchProblem& problem, std::span<const search::Answer> 
 
 }  // namespace
 
-void examine_answers(const SearchProblem& problem, std::span<const search::Answer> answers, Tally& tally) {
+void examine_answers(const SearchProblem& problem, std::span<const Answer> answers, Tally& tally) {
   const std::vector<std::string> kinds = kinds_of(problem);
   for (const std::string& kind : kinds) {
     ++tally.rows[kind].problems;
@@ -179,7 +179,7 @@ void examine(std::uint64_t seed, const std::string& code, Tally& tally) {
   }
   SearchProblem problem = reference::make_search_problem(options, kQueriesPerProblem);
   reference::SearchRun run(problem);
-  const std::vector<search::Answer> answers = run.distances();
+  const std::vector<Answer> answers = run.distances();
   examine_answers(problem, answers, tally);
   if (seed % kProblemsPerExtra == 0) {
     examine_budget(problem, run, tally);

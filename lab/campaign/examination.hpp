@@ -16,6 +16,6 @@ inline constexpr int kQueriesPerProblem = 64;
 void examine(std::uint64_t seed, const std::string& code, Tally& tally);
 
 /// The part of it that looks at the answers of an unlimited call.
-void examine_answers(const reference::SearchProblem& problem, std::span<const search::Answer> answers, Tally& tally);
+void examine_answers(const reference::SearchProblem& problem, std::span<const Answer> answers, Tally& tally);
 
 }  // namespace depthgrid::lab

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/grid/map/parallel_for.hpp"
 #include "reference/reference.hpp"
 
@@ -19,7 +19,7 @@ grid::GridEvaluator make_evaluator(const reference::RandomProblem& problem, grid
   settings.sensor = problem.sensor;
   const grid::DepthQuantisation quantisation{problem.d_min_m, problem.step_m, 0.0, problem.cell_count};
   grid::GridEvaluator evaluator(problem.rig, problem.principal, quantisation, settings);
-  evaluator.update(problem.frames);
+  (void)update_all(evaluator, problem.frames);
   return evaluator;
 }
 
@@ -43,7 +43,7 @@ std::vector<PointErrors> one_scene(const CampaignSettings& settings, int scene) 
     const reference::Interval interval = oracle.distance(p_world);
     const double hi_m = interval.hi_m.value_or(problem.rho_m);
     const auto error = [&](const grid::GridEvaluator& evaluator) {
-      const double answer_m = evaluator.evaluate(p_world).nearest.distance_m;
+      const double answer_m = evaluator.distance(Capsule::point(p_world)).nearest.distance_m;
       return PointErrors::Error{std::max(0.0, answer_m - hi_m), std::max(0.0, interval.lo_m - answer_m)};
     };
     PointErrors point;
@@ -54,7 +54,7 @@ std::vector<PointErrors> one_scene(const CampaignSettings& settings, int scene) 
       const double answer_m = model.distance_m(p_world, first_mends(mends));
       point.over_after_mends_m[static_cast<std::size_t>(mends)] = std::max(0.0, answer_m - hi_m);
       if (mends == 0) {
-        point.model_agrees = std::abs(answer_m - printed.evaluate(p_world).nearest.distance_m) < 1e-4;
+        point.model_agrees = std::abs(answer_m - printed.distance(Capsule::point(p_world)).nearest.distance_m) < 1e-4;
       }
     }
     point.within_rho = interval.hi_m.has_value();

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "depthgrid/core/pixel_frustum.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/grid/map/parallel_for.hpp"
 #include "depthgrid/simulation/scene.hpp"
 #include "reference/random_problem.hpp"
@@ -60,7 +60,7 @@ struct FarRig {
       frame.depth = depth_view(image, 640, 480);
       frames.push_back(frame);
     }
-    result.update(frames);
+    (void)update_all(result, frames);
     return result;
   }
 };
@@ -161,7 +161,8 @@ std::vector<WindowMiss> measure_window() {
         break;
       }
       const auto found = [&](grid::Window window) {
-        return far.evaluator(grid::Variant::letter, window).evaluate(p_world).nearest.distance_m < kRhoM;
+        return far.evaluator(grid::Variant::letter, window).distance(Capsule::point(p_world)).nearest.distance_m <
+               kRhoM;
       };
       if (!found(grid::Window::region_of_surveillance)) {
         row.first_missed_m = std::min(row.first_missed_m, there_m);
@@ -296,7 +297,8 @@ Vanishing vanishing_of(const Object& object, int secondaries, bool behind, int t
     // The object's surface is nearer than its centre; an answer 5 cm beyond the centre is about something else.
     const double limit_m = (p_world - centre).norm() + 0.05;
     const auto misses = [&](grid::Variant variant) {
-      return far.evaluator(variant, grid::Window::whole_image).evaluate(p_world).nearest.distance_m > limit_m;
+      return far.evaluator(variant, grid::Window::whole_image).distance(Capsule::point(p_world)).nearest.distance_m >
+             limit_m;
     };
     row.letter += misses(grid::Variant::letter) ? 1 : 0;
     row.corrected += misses(grid::Variant::corrected) ? 1 : 0;

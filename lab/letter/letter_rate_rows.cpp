@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "lab/measure/clocks.hpp"
 
 namespace depthgrid::lab {
@@ -36,19 +37,21 @@ RateRow measure_rate(const Workload& workload, int cameras, const RateMethod& me
   Rig rig = workload.rig();
   rig.cameras.resize(static_cast<std::size_t>(cameras));
   grid::GridEvaluator evaluator(rig, 0, {0.2882, 0.01, 0.0, 343}, method.settings);
-  std::vector<grid::Evaluation> answers(kWorkloadControlPoints);
+  std::vector<Answer> answers(kWorkloadControlPoints);
   std::uint64_t seed = 1;
   for (int set = 0; set < workload.frame_sets(); ++set) {
     const auto frames = workload.frames(set).first(static_cast<std::size_t>(cameras));
     const double update_start_s = processor_time_s();
-    evaluator.update(frames);
+    (void)update_all(evaluator, frames);
     row.update_s.push_back(processor_time_s() - update_start_s);
     for (int i = 0; i < std::max(1, repetitions / method.repetition_divisor); ++i) {
       const auto points = random_workload_points(Workload::time_s(set), kWorkloadControlPoints, seed++);
       const double start_s = processor_time_s();
-      evaluator.evaluate(points, answers, &row.count);
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        answers[p] = evaluator.distance(Capsule::point(points[p]), &row.count);
+      }
       row.evaluation_s.push_back(processor_time_s() - start_s);
-      for (const grid::Evaluation& answer : answers) {
+      for (const Answer& answer : answers) {
         if (has_distance(answer.nearest)) {
           row.distances_m.push_back(answer.nearest.distance_m);
         }

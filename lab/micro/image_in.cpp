@@ -73,10 +73,10 @@ Samples measure(const Rig& rig, int frame_sets, int repetitions,
         Frame frame = frames(set)[k];
         frame.robot = with_robot ? frame.robot : RobotView{};
         const Stopwatch watch;
-        const views::UpdateResult result = store.update(k, frame);
+        const FrameUpdate update = store.update(k, frame);
         const double elapsed_ms = 1e3 * watch.elapsed_s();
-        if (result != views::UpdateResult::taken) {
-          fail("a frame was not taken");
+        if (!update.taken()) {
+          fail("a frame was not taken: ", update.reason);
         }
         if (repetition >= 0) {
           times_ms.add(elapsed_ms);

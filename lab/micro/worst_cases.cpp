@@ -35,7 +35,7 @@ struct Case {
 
 Case run(const views::ViewStore& store, const std::vector<Capsule>& points, const search::Budget& budget) {
   search::Search searcher;
-  std::vector<search::Answer> answers(points.size());
+  std::vector<Answer> answers(points.size());
   const views::Snapshot snapshot = store.snapshot();
   Samples times_ms;
   Case result;
@@ -48,7 +48,7 @@ Case run(const views::ViewStore& store, const std::vector<Capsule>& points, cons
   }
   result.median_ms = times_ms.median();
   result.most_ms = times_ms.largest();
-  for (const search::Answer& answer : answers) {
+  for (const Answer& answer : answers) {
     result.unfinished += answer.nearest.budget ? 1 : 0;
     result.mean_m += answer.nearest.distance_m / static_cast<double>(answers.size());
   }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "lab/peers/peer.hpp"
 
 namespace depthgrid::lab {
@@ -17,7 +17,8 @@ class GridPeer : public Peer {
  private:
   double rho_m_;
   grid::GridEvaluator evaluator_;
-  std::vector<grid::Evaluation> answers_;
+  std::vector<Capsule> points_;
+  std::vector<Answer> answers_;
 };
 
 }  // namespace depthgrid::lab

@@ -28,7 +28,7 @@ class SearchPeer : public Peer {
   views::Snapshot snapshot_;
   search::Search search_;
   std::vector<Capsule> primitives_;
-  std::vector<search::Answer> answers_;
+  std::vector<Answer> answers_;
 };
 
 }  // namespace depthgrid::lab

@@ -160,7 +160,7 @@ std::vector<BallSearchFigures> study_ball_search(files::Recording& recording, co
         for (const auto& p : points) {
           primitives.push_back(Capsule::point(p));
         }
-        std::vector<search::Answer> answers(points.size());
+        std::vector<Answer> answers(points.size());
         search.distances(store.snapshot(), primitives, answers);
         for (std::size_t i = 0; i < points.size(); ++i) {
           const Eigen::Vector3d from_ball = points[i] - ball.centre;

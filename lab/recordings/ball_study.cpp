@@ -34,7 +34,7 @@ struct Runner {
   Sample ask(const Eigen::Vector3d& p_world, const Eigen::Vector3d& ball_world, double radius_m, bool ball_seen) const {
     const Eigen::Vector3d from_ball = p_world - ball_world;
     const Eigen::Vector3d nearest_on_ball = ball_world + radius_m * from_ball.normalized();
-    const Proximity answer = evaluator.evaluate(p_world).nearest;
+    const Proximity answer = evaluator.distance(Capsule::point(p_world)).nearest;
     Sample sample;
     sample.principal = static_cast<std::uint8_t>(cameras.front());
     sample.cameras = static_cast<std::uint8_t>(cameras.size());
@@ -159,7 +159,7 @@ BallStudy study_ball(files::Recording& recording, const BallTrack& track, const 
         Runner& runner = runners[s][n];
         const std::size_t principal = runner.cameras.front();
         const bool seen = sees_ball(rig.cameras[principal], images[principal], ball->second, track.radius_m);
-        runner.evaluator.update(sub_frames(images, runner.cameras));
+        (void)update_all(runner.evaluator, sub_frames(images, runner.cameras));
         const auto begin = std::chrono::steady_clock::now();
         for (const auto& p_floor : points_floor) {
           study.settings[s].sets[n].samples.push_back(

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "depthgrid/files/recording.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "lab/recordings/ball_track.hpp"
 #include "lab/recordings/gray_area.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/files/recording.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "lab/measure/recording_folder.hpp"
 #include "lab/recordings/ball_track.hpp"
 #include "lab/recordings/cameras.hpp"
@@ -73,10 +73,10 @@ std::string kitchen_tables() {
     for (std::size_t principal = 0; principal < rig.cameras.size(); ++principal) {
       for (const CameraSet& set : camera_sets(rig.cameras.size(), principal)) {
         grid::GridEvaluator evaluator(sub_rig(rig, set), 0, cells, settings_of(which));
-        evaluator.update(sub_frames(images, set));
+        (void)update_all(evaluator, sub_frames(images, set));
         Row& row = rows[set.size()];
         for (const auto& p_floor : points) {
-          const Proximity answer = evaluator.evaluate(T_world_floor * p_floor).nearest;
+          const Proximity answer = evaluator.distance(Capsule::point(T_world_floor * p_floor)).nearest;
           if (!has_distance(answer)) {
             continue;
           }

@@ -65,7 +65,7 @@ LeaveOneOut::LeaveOneOut(const Rig& asked, const std::vector<CameraMargins>& mar
     : settings_(settings_of(margins, v_max_m_s)), store_(asked, settings_) {}
 
 void LeaveOneOut::update(std::size_t slot, const Frame& frame, const Pose& T_world_camera) {
-  if (store_.update(slot, frame, T_world_camera) != views::UpdateResult::taken) {
+  if (!store_.update(slot, frame, T_world_camera).taken()) {
     fail("camera ", slot, ": its frame was not taken; it must have the calibration's size");
   }
 }
@@ -111,8 +111,8 @@ std::vector<LeftOutReading> LeaveOneOut::check(const RigCamera& left_out, const 
       before.push_back(Capsule::point(reading.p_world + kProbe_m * (centre - reading.p_world).normalized()));
     }
   }
-  std::vector<search::Answer> answers(points.size());
-  std::vector<search::Answer> answers_before(points.size());
+  std::vector<Answer> answers(points.size());
+  std::vector<Answer> answers_before(points.size());
   search_.distances(snapshot, points, answers);
   search_.distances(snapshot, before, answers_before);
   for (std::size_t i = 0; i < readings.size(); ++i) {

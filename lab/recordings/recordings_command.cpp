@@ -10,7 +10,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/files/recording.hpp"
 #include "depthgrid/files/text_file.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "lab/commands.hpp"
 #include "lab/measure/recording_folder.hpp"
 #include "lab/recordings/ball_search.hpp"
@@ -52,12 +52,12 @@ void save_picture(const RecordingsOptions& options, files::Recording& recording,
   const auto setting = ball_settings().at(1);
   grid::GridEvaluator evaluator(rig, 0, ball_cells(), setting.evaluation);
   const auto frames = recording.read(index);
-  evaluator.update(frames);
+  (void)update_all(evaluator, frames);
   const Pose T_floor_world = rig.T_floor_world.value_or(Pose::Identity());
   std::vector<program::PictureLine> lines;
   for (const auto& p_floor : points_around(T_floor_world * track.centre_world.at(number))) {
     const Eigen::Vector3d p_world = T_floor_world.inverse() * p_floor;
-    lines.push_back({p_world, evaluator.evaluate(p_world).nearest});
+    lines.push_back({p_world, evaluator.distance(Capsule::point(p_world)).nearest});
   }
   program::save_frame_picture(options.picture,
                               "kinect3_ball, frame " + std::to_string(number) + ": " + setting.name + ", three cameras",

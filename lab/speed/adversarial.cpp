@@ -62,7 +62,8 @@ void measure_adversarial(Stage& stage, const OurPlan& plan, Report& report) {
       Calls calls;
       const Stopwatch watch;
       for (int i = 0; i < 3 || (i < plan.repetitions / 4 && watch.elapsed_s() < 0.2 * plan.limit_s); ++i) {
-        calls.ask(ours, as_points(one.points), false, i == 0, {0, budget_s});
+        calls.ask(ours, as_points(one.points), false, i == 0,
+                  {{}, budget_s > 0 ? std::optional(budget_s) : std::nullopt});
       }
       Record record = calls.record("adversarial", one.name, stage.cameras());
       record.numbers["budget_s"] = budget_s;

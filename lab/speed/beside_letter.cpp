@@ -1,4 +1,4 @@
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "lab/speed/calls.hpp"
 #include "lab/speed/our_figures.hpp"
 
@@ -21,19 +21,20 @@ void measure_beside_letter(Stage& stage, const std::string& workload, const OurP
   Calls our_hybrid;
   Samples hybrid_s;
   Samples minimum_s;
-  std::vector<grid::Evaluation> answers(kWorkloadControlPoints);
+  std::vector<Answer> answers(kWorkloadControlPoints);
   const Stopwatch watch;
   for (int set = 0; set < stage.frame_sets(); ++set) {
     ours.prepare(stage.frames(set), stage.arm_region());
-    hybrid.update(stage.frames(set));
-    minimum.update(stage.frames(set));
+    (void)update_all(hybrid, stage.frames(set));
+    (void)update_all(minimum, stage.frames(set));
     const double until_s = 2 * plan.limit_s * (set + 1) / stage.frame_sets();
     for (int i = 0; i == 0 || (i < plan.letter_repetitions && watch.elapsed_s() < until_s); ++i) {
-      const auto points = random_workload_points(time_between_s(set, i), kWorkloadControlPoints, seed_of(set, i));
-      our_distances.ask(ours, as_points(points), false, i == 0);
-      hybrid_s.add(timed_s([&] { hybrid.evaluate(points, answers); }));
-      our_hybrid.ask(ours, as_points(points), true, false);
-      minimum_s.add(timed_s([&] { minimum.evaluate(points, answers); }));
+      const Questions points =
+          as_points(random_workload_points(time_between_s(set, i), kWorkloadControlPoints, seed_of(set, i)));
+      our_distances.ask(ours, points, false, i == 0);
+      hybrid_s.add(timed_s([&] { hybrid.evaluate(points, Workload::time_s(set), answers); }));
+      our_hybrid.ask(ours, points, true, false);
+      minimum_s.add(timed_s([&] { minimum.evaluate(points, Workload::time_s(set), answers); }));
     }
   }
   const auto add = [&](const char* name, const Samples& times_s) {

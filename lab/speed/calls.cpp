@@ -40,8 +40,8 @@ void Calls::ask(SearchPeer& ours, const Questions& questions, bool hybrid, bool 
     first_s_.add(time_s);
   }
   answer_count_ += static_cast<double>(answers_.size());
-  stopped_ += static_cast<double>(std::count_if(answers_.begin(), answers_.end(),
-                                                [](const search::Answer& answer) { return answer.nearest.budget; }));
+  stopped_ += static_cast<double>(
+      std::count_if(answers_.begin(), answers_.end(), [](const Answer& answer) { return answer.nearest.budget; }));
 }
 
 Record Calls::record(const std::string& group, const std::string& name, int cameras) const {

@@ -31,7 +31,7 @@ class Calls {
   /// `first`: right after a frame set.
   void ask(SearchPeer& ours, const Questions& questions, bool hybrid, bool first, const search::Budget& budget = {});
 
-  [[nodiscard]] const std::vector<search::Answer>& last() const { return answers_; }
+  [[nodiscard]] const std::vector<Answer>& last() const { return answers_; }
   [[nodiscard]] const Samples& times_s() const { return call_s_; }
   [[nodiscard]] double total_s() const { return total_s_; }
   [[nodiscard]] Record record(const std::string& group, const std::string& name, int cameras) const;
@@ -43,7 +43,7 @@ class Calls {
   search::Count count_;
   double answer_count_ = 0;
   double stopped_ = 0;  ///< answers that a budget stopped
-  std::vector<search::Answer> answers_;
+  std::vector<Answer> answers_;
 };
 
 }  // namespace depthgrid::lab

@@ -47,7 +47,7 @@ WorkcellScene::WorkcellScene(simulation::Motion motion, std::uint64_t seed, ArmS
     body.kind = BodyKind::robot;
     const Capsule upright{Eigen::Vector3d::Zero(), {0, 0, (link.b - link.a).norm()}, link.radius_m};
     if (shape == ArmShape::meshes) {
-      body.mesh = std::make_shared<simulation::TriangleMesh>(mesh_of(upright, mesh_segments));
+      body.mesh = std::make_shared<simulation::TriangleMesh>(simulation::mesh_of(upright, mesh_segments));
     } else {
       body.capsules = {upright};
     }

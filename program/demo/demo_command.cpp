@@ -9,8 +9,8 @@
 #include <sstream>
 #include <vector>
 
-#include "depthgrid/grid/evaluation.hpp"
-#include "depthgrid/search/search.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "depthgrid/simulation/demo_scene.hpp"
 #include "program/demo/demo_picture.hpp"
 
@@ -38,24 +38,8 @@ std::vector<Frame> frames_of(const std::vector<simulation::View>& views) {
   return frames;
 }
 
-std::vector<Proximity> evaluate_grid(const simulation::DemoScene& demo, const Rig& rig, std::span<const Frame> frames,
-                                     const grid::DepthQuantisation& quantisation,
-                                     const grid::EvaluationSettings& settings) {
-  grid::GridEvaluator evaluator(rig, 0, quantisation, settings);
-  (void)evaluator.update(frames);  // the frames of the scene are complete
-  std::vector<grid::Evaluation> evaluations(demo.control_points_world.size());
-  evaluator.evaluate(demo.control_points_world, evaluations);
-  std::vector<Proximity> answers;
-  answers.reserve(evaluations.size());
-  for (const grid::Evaluation& evaluation : evaluations) {
-    answers.push_back(evaluation.nearest);
-  }
-  return answers;
-}
-
 /// The same question to the search: the grid's space, exact images of one instant.
-std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const Rig& rig, std::span<const Frame> frames,
-                                       const grid::DepthQuantisation& quantisation, double rho_m) {
+views::Settings search_settings(const Rig& rig, const grid::DepthQuantisation& quantisation, double rho_m) {
   const grid::DepthGrid space(rig.cameras[0].intrinsics, quantisation);
   views::Settings settings;
   settings.space = views::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
@@ -63,23 +47,17 @@ std::vector<Proximity> evaluate_search(const simulation::DemoScene& demo, const 
   settings.margins.assign(rig.cameras.size(), CameraMargins{});
   settings.rho_m = rho_m;
   settings.v_max_m_s = 0.0;
-  views::ViewStore store(rig, settings);
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    (void)store.update(k, frames[k]);
+  return settings;
+}
+
+std::unique_ptr<DistanceEvaluator> make_evaluator(const Rig& rig, const grid::DepthQuantisation& quantisation,
+                                                  const std::string& method) {
+  grid::EvaluationSettings settings;
+  if (method == "search") {
+    return std::make_unique<search::SearchEvaluator>(rig, search_settings(rig, quantisation, settings.rho_m));
   }
-  std::vector<Capsule> points;
-  points.reserve(demo.control_points_world.size());
-  for (const Eigen::Vector3d& p_world : demo.control_points_world) {
-    points.push_back(Capsule::point(p_world));
-  }
-  std::vector<search::Answer> found(points.size());
-  search::Search().distances(store.snapshot(), points, found);
-  std::vector<Proximity> answers;
-  answers.reserve(found.size());
-  for (const search::Answer& answer : found) {
-    answers.push_back(answer.nearest);
-  }
-  return answers;
+  settings.variant = method == "letter" ? grid::Variant::letter : grid::Variant::corrected;
+  return std::make_unique<grid::GridEvaluator>(rig, 0, quantisation, settings);
 }
 
 /// Distances of all control points with the first `cameras` cameras of the demo.
@@ -87,10 +65,21 @@ std::vector<Proximity> evaluate(const simulation::DemoScene& demo, std::span<con
                                 const grid::DepthQuantisation& quantisation, const std::string& method) {
   Rig rig = demo.rig;
   rig.cameras.resize(cameras);
-  grid::EvaluationSettings settings;
-  settings.variant = method == "letter" ? grid::Variant::letter : grid::Variant::corrected;
-  return method == "search" ? evaluate_search(demo, rig, frames.first(cameras), quantisation, settings.rho_m)
-                            : evaluate_grid(demo, rig, frames.first(cameras), quantisation, settings);
+  const auto evaluator = make_evaluator(rig, quantisation, method);
+  (void)update_all(*evaluator, frames.first(cameras));  // the frames of the scene are complete
+  std::vector<Capsule> points;
+  points.reserve(demo.control_points_world.size());
+  for (const Eigen::Vector3d& p_world : demo.control_points_world) {
+    points.push_back(Capsule::point(p_world));
+  }
+  std::vector<Answer> found(points.size());
+  evaluator->evaluate(points, 0, found);
+  std::vector<Proximity> answers;
+  answers.reserve(found.size());
+  for (const Answer& answer : found) {
+    answers.push_back(answer.nearest);
+  }
+  return answers;
 }
 
 std::string cell(const Proximity& answer) {

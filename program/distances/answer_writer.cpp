@@ -98,7 +98,7 @@ std::string AnswerWriter::header() const {
 }
 
 std::string AnswerWriter::line(int frame, std::optional<double> time_s, const files::ControlPoint& point,
-                               const PointAnswer& answer) const {
+                               const Answer& answer) const {
   const Proximity& nearest = answer.nearest;
   Row row;
   row.frame = frame;

@@ -5,23 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "depthgrid/core/answer.hpp"
 #include "depthgrid/core/pose.hpp"
-#include "depthgrid/core/proximity.hpp"
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/files/control_points.hpp"
 
 namespace depthgrid::program {
 
 enum class AnswerFormat : std::uint8_t { csv, json_lines };
-
-/// What a method says about one control point, in the world frame.
-struct PointAnswer {
-  Proximity nearest;
-  Eigen::Vector3d hybrid_direction_world = Eigen::Vector3d::Zero();
-  std::int64_t obstacle_points = 0;
-  /// The point of a capsule's axis that is nearest to the obstacle; NaN where there is none.
-  Eigen::Vector3d on_axis_world = Eigen::Vector3d::Constant(Proximity::kNaN);
-};
 
 /// What is written beyond the columns that all methods have.
 struct AnswerColumns {
@@ -43,7 +34,7 @@ class AnswerWriter {
 
   /// One line. `point` is in the output frame; `time_s` is empty where the recording does not say.
   [[nodiscard]] std::string line(int frame, std::optional<double> time_s, const files::ControlPoint& point,
-                                 const PointAnswer& answer) const;
+                                 const Answer& answer) const;
 
  private:
   struct Row;

@@ -4,17 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "depthgrid/files/recording.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "program/distances/answer_writer.hpp"
 #include "program/distances/evaluation_options.hpp"
 #include "program/distances/frame_picture.hpp"
-#include "program/distances/grid_frame_evaluator.hpp"
 #include "program/distances/point_options.hpp"
-#include "program/distances/search_frame_evaluator.hpp"
+#include "program/distances/recorded_grid.hpp"
 #include "program/distances/search_options.hpp"
 #include "program/frame_selection.hpp"
 #include "program/output_file.hpp"
@@ -127,6 +129,29 @@ void check(const files::Recording& recording, const DistancesOptions& options,
   }
 }
 
+std::unique_ptr<DistanceEvaluator> make_search_evaluator(const Rig& rig, const views::Settings& settings,
+                                                         const search::Budget& budget, bool hybrid) {
+  const std::size_t directions = hybrid ? std::numeric_limits<std::size_t>::max() : 0;
+  return std::make_unique<search::SearchEvaluator>(
+      rig, settings, search::EvaluatorOptions{.directions = directions, .budget = budget});
+}
+
+std::vector<Answer> evaluate(DistanceEvaluator& evaluator, const std::vector<files::ControlPoint>& points_world,
+                             double now_s, bool searches) {
+  std::vector<Capsule> capsules;
+  capsules.reserve(points_world.size());
+  for (const files::ControlPoint& point : points_world) {
+    if (!searches && (point.has_end || grid::why_refused(point.capsule) != nullptr)) {
+      fail("control point '", point.id, "' has a ", point.has_end ? "second end" : "radius",
+           ", which only --method search knows");
+    }
+    capsules.push_back(point.capsule);
+  }
+  std::vector<Answer> answers(capsules.size());
+  evaluator.evaluate(capsules, now_s, answers);
+  return answers;
+}
+
 void run(const DistancesOptions& options) {
   check_method(options);
   const bool searches = options.evaluation.method == "search";
@@ -152,13 +177,15 @@ void run(const DistancesOptions& options) {
     index -= first;
   }
 
+  const bool hybrid = options.evaluation.collect == "hybrid";
   const auto evaluator =
       searches ? make_search_evaluator(rig, search_settings(options.search, options.evaluation, principal, margins),
-                                       search_budget(options.search), options.evaluation.collect == "hybrid")
+                                       search_budget(options.search), hybrid)
                : make_grid_evaluator(recording, indices, options.evaluation, {options.map_file, principal},
                                      evaluation_settings(options.evaluation, margins));
   const auto format = options.format == "csv" ? AnswerFormat::csv : AnswerFormat::json_lines;
-  const AnswerWriter writer(format, rig, T_output_world, evaluator->columns());
+  const AnswerWriter writer(format, rig, T_output_world,
+                            {.hybrid_direction = hybrid, .obstacle_points = hybrid && !searches, .shapes = searches});
   OutputFile output(options.output);
   if (!options.pictures.empty()) {
     make_output_directory(options.pictures);
@@ -171,13 +198,15 @@ void run(const DistancesOptions& options) {
     const int number = recording.frame_number(index);
     const auto points_now = points.at(number);
     const auto frames = recording.read(index);
-    if (!evaluator->update(frames)) {
-      fail("frame ", number, ": a camera has no image");
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      if (const FrameUpdate update = evaluator->update(k, frames[k]); !update.taken()) {
+        fail("frame ", number, ", camera '", rig.cameras[k].id, "': ", update.reason);
+      }
     }
     const auto time_s =
         recording.rate_hz() ? std::optional<double>(index / *recording.rate_hz()) : std::optional<double>();
     const auto points_world = in_world(points_now, T_output_world.inverse());
-    const auto answers = evaluator->evaluate(points_world);
+    const std::vector<Answer> answers = evaluate(*evaluator, points_world, frames.front().time_s, searches);
     std::vector<PictureLine> picture;
     for (std::size_t k = 0; k < points_now.size(); ++k) {
       output.write(writer.line(number, time_s, points_now[k], answers[k]));

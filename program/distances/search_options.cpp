@@ -128,9 +128,7 @@ search::Budget search_budget(const SearchOptions& options) {
   if (options.budget_nodes && *options.budget_nodes < 1) {
     fail_usage("--budget-nodes ", *options.budget_nodes, " must be at least 1");
   }
-  search::Budget budget;
-  budget.nodes = options.budget_nodes.value_or(0);
-  return budget;
+  return {.nodes = options.budget_nodes};
 }
 
 }  // namespace depthgrid::program

@@ -6,8 +6,9 @@
 
 #include "avoidance/flat_wall.hpp"
 #include "depthgrid/avoidance/history_port.hpp"
-#include "depthgrid/avoidance/search_distances.hpp"
+#include "depthgrid/avoidance/nothing_near.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/thrown_message.hpp"
 
@@ -25,7 +26,7 @@ class Loop : public ::testing::Test {
   robot::RobotModel model_ = robot::kuka_lwr4();
   robot::JointHistory history_{7, 256, 0.02, 0.01};
   control::PolygonTask task_{test::hexagon(model_)};
-  NoDistances nothing_;
+  NothingNear nothing_;
 };
 
 TEST_F(Loop, RefusesSettingsThatDoNotFit) {
@@ -128,8 +129,8 @@ TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
   const Rig rig = test::one_camera();
   LoopSettings settings = test::loop_settings(robot::moving_capsules(model_));
   settings.end_effector_limits = true;
-  SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
-  AvoidanceLoop loop({model_}, task_, source, settings);
+  search::SearchEvaluator evaluator(rig, test::search_settings(rig), {.directions = 1});
+  AvoidanceLoop loop({model_}, task_, evaluator, settings);
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   (void)loop.cycle(arm, 0);
@@ -138,8 +139,8 @@ TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
     arm.advance();
     (void)loop.cycle(arm, k * kPeriod);
   }
-  for (const PartAnswer& answer : loop.answers()) {
-    EXPECT_EQ(answer.obstacle.distance_m.value_or(0), 0);
+  for (const Answer& answer : loop.answers()) {
+    EXPECT_EQ(control::obstacle_of(answer).distance_m.value_or(0), 0);
   }
   // The law of the risk leaves 1 - f(0) of the task, and of each joint's speed.
   const auto& repulsion = settings.controller.repulsion;
@@ -154,8 +155,8 @@ TEST_F(Loop, DoesNotAllocateWithTheSearch) {
   const Rig rig = test::one_camera();
   LoopSettings settings = test::loop_settings(robot::moving_capsules(model_));
   settings.end_effector_limits = true;
-  SearchDistances source(rig, test::search_settings(rig), settings.parts.size());
-  AvoidanceLoop loop({model_}, task_, source, settings);
+  search::SearchEvaluator evaluator(rig, test::search_settings(rig), {.directions = 1});
+  AvoidanceLoop loop({model_}, task_, evaluator, settings);
   robot::FrameIntake intake(rig, {model_}, history_, {});
   control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
   HistoryPort port(arm, history_);
@@ -167,13 +168,13 @@ TEST_F(Loop, DoesNotAllocateWithTheSearch) {
     working = loop.cycle(port, k * kPeriod) && working;
     if (k % 10 == 0) {
       const Frame seen{depth_view(wall, 64, 48, 0.001), {}, k * kPeriod};
-      working = source.take(intake.frames({&seen, 1})) && intake.report()[0].robot_removed && working;
+      working = update_all(evaluator, intake.frames({&seen, 1})).taken() && intake.report()[0].robot_removed && working;
     }
     arm.advance();
     ASSERT_EQ(guard.allocations(), 0) << "cycle " << k;
   }
   EXPECT_TRUE(working);
-  EXPECT_GT(source.answered(), 0);
+  EXPECT_NE(loop.answers()[0].nearest.state, ProximityState::not_evaluated);
 }
 
 /// Keeps the flange where and as it is: six rows.

@@ -5,8 +5,8 @@
 #include "avoidance/flat_wall.hpp"
 #include "depthgrid/avoidance/history_port.hpp"
 #include "depthgrid/avoidance/model_limits.hpp"
-#include "depthgrid/avoidance/search_distances.hpp"
 #include "depthgrid/robot/urdf.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "depthgrid/views/surveillance_radius.hpp"
 #include "support/thrown_message.hpp"
 
@@ -106,16 +106,15 @@ TEST(SurveillanceRadius, LeavesRhoUntilTheImageIsAsOldAsItMayBe) {
   views::Settings settings = test::search_settings(rig);
   settings.rho_m = views::surveillance_radius_m(kRho_m, settings.v_max_m_s, kGreatestAge_s);
   EXPECT_EQ(settings.rho_m, kRho_m + 2 * kGreatestAge_s);
-  SearchDistances source(rig, settings, 1);
+  search::SearchEvaluator evaluator(rig, settings);
   const std::vector<float> wall(64 * 48, 3.2F);
   const Frame frame{depth_view(wall, 64, 48), {}, 5.0};
-  ASSERT_TRUE(source.take({&frame, 1}));
+  ASSERT_TRUE(evaluator.update(0, frame).taken());
   const Capsule part = Capsule::point({0, 0, 0.6});  // 1.2 m before the wall
   const auto told_m = [&](double age_s) {
-    PartAnswer answer;
-    source.evaluate({&part, 1}, 5.0 + age_s, {&answer, 1});
+    const Answer answer = evaluator.distance(part, 5.0 + age_s);
     EXPECT_EQ(answer.nearest.state, ProximityState::beyond_rho);
-    return answer.obstacle.distance_m.value_or(0);
+    return answer.distance_now_m;
   };
   EXPECT_GE(told_m(0), kRho_m);
   EXPECT_NEAR(told_m(kGreatestAge_s), kRho_m, 1e-9);

@@ -37,10 +37,10 @@ TEST(WiderVectors, TheLibraryAnswersAProgramForANewerProcessor) {
   Frame frame;
   frame.depth = {wall_m.data(), DepthFormat::float32_metres, 64, 48, 0, 1.0};
   for (std::size_t k = 0; k < 3; ++k) {
-    ASSERT_EQ(store.update(k, frame), views::UpdateResult::taken);
+    ASSERT_EQ(store.update(k, frame).result, UpdateResult::taken);
   }
   search::Search search;
-  std::vector<search::Answer> answers(2);
+  std::vector<Answer> answers(2);
   const std::vector<Capsule> asked{Capsule::point({1.8, 0, 0}), Capsule::sphere({1.8, 0.1, 0}, 0.05)};
   search.distances(store.snapshot(), asked, answers);
   EXPECT_NEAR(answers[0].nearest.distance_m, 0.2, 0.006);

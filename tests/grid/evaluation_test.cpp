@@ -1,14 +1,14 @@
 // What a user of the evaluator relies on: states, bad input, staleness, threads, no allocation.
-#include "depthgrid/grid/evaluation.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <thread>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "support/allocation_guard.hpp"
 
 namespace depthgrid::grid {
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, BothVariants, ::testing::Values(Variant::lett
 TEST_P(BothVariants, BeforeTheFirstFrameNothingIsFree) {
   const TwoCameras two;
   const GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  const Evaluation answer = evaluator.evaluate({0, 0, 1.5});
+  const Answer answer = evaluator.distance(Capsule::point({0, 0, 1.5}));
   EXPECT_NEAR(answer.nearest.distance_m, 0.0, 1e-9);
   EXPECT_EQ(answer.nearest.state, ProximityState::unmeasured);
 }
@@ -77,8 +77,8 @@ TEST_P(BothVariants, MeasuredSurface) {
   two.fill(0, 2.0F);
   two.fill(1, 1.0F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  ASSERT_TRUE(evaluator.update(two.frames));
-  const Evaluation answer = evaluator.evaluate({0, 0, 1.7});
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  const Answer answer = evaluator.distance(Capsule::point({0, 0, 1.7}));
   EXPECT_NEAR(answer.nearest.distance_m, 0.3, 1e-6);
   EXPECT_EQ(answer.nearest.state, ProximityState::measured);
   ASSERT_TRUE(answer.nearest.camera.has_value());
@@ -91,8 +91,8 @@ TEST_P(BothVariants, TheOtherCameraRemovesTheShadow) {
   two.fill(0, 0.5F);   // something close to the front camera shadows the whole space
   two.fill(1, 2.35F);  // and the back camera sees up to it
   GridEvaluator both = two.evaluator(of(GetParam()));
-  ASSERT_TRUE(both.update(two.frames));
-  const Evaluation fused = both.evaluate({0.01, 0.01, 1.2});
+  ASSERT_TRUE(update_all(both, two.frames).taken());
+  const Answer fused = both.distance(Capsule::point({0.01, 0.01, 1.2}));
   EXPECT_EQ(fused.nearest.state, ProximityState::beyond_rho);
   EXPECT_EQ(fused.nearest.distance_m, 0.4);
   EXPECT_TRUE(fused.nearest.nearest_world.array().isNaN().all());
@@ -102,8 +102,8 @@ TEST_P(BothVariants, TheOtherCameraRemovesTheShadow) {
   one.frames.pop_back();
   one.refer(0);
   GridEvaluator single = one.evaluator(of(GetParam()));
-  ASSERT_TRUE(single.update(one.frames));
-  const Evaluation shadow = single.evaluate({0.01, 0.01, 1.2});
+  ASSERT_TRUE(update_all(single, one.frames).taken());
+  const Answer shadow = single.distance(Capsule::point({0.01, 0.01, 1.2}));
   EXPECT_NEAR(shadow.nearest.distance_m, 0.0, 1e-9);
   EXPECT_EQ(shadow.nearest.state, ProximityState::occluded);
   EXPECT_TRUE(shadow.nearest.direction_world.isZero());
@@ -116,16 +116,16 @@ TEST_P(BothVariants, AMissingCameraFreesNothing) {
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
   std::vector<Frame> frames = two.frames;
   frames[1].depth = {};
-  EXPECT_FALSE(evaluator.update(frames));
-  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.2}).nearest.distance_m, 0.0, 1e-9);
+  EXPECT_FALSE(update_all(evaluator, frames).taken());
+  EXPECT_NEAR(evaluator.distance(Capsule::point({0, 0, 1.2})).nearest.distance_m, 0.0, 1e-9);
   frames[1] = two.frames[1];
   frames[1].depth.width_px = kWidth / 2;
-  EXPECT_FALSE(evaluator.update(frames)) << "another size than the calibration";
-  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.2}).nearest.distance_m, 0.0, 1e-9);
-  EXPECT_FALSE(evaluator.update(std::span<const Frame>(two.frames).first(1)));
-  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.2}).nearest.distance_m, 0.0, 1e-9);
-  EXPECT_TRUE(evaluator.update(two.frames));
-  EXPECT_EQ(evaluator.evaluate({0, 0, 1.2}).nearest.state, ProximityState::beyond_rho);
+  EXPECT_FALSE(update_all(evaluator, frames).taken()) << "another size than the calibration";
+  EXPECT_NEAR(evaluator.distance(Capsule::point({0, 0, 1.2})).nearest.distance_m, 0.0, 1e-9);
+  EXPECT_FALSE(update_all(evaluator, std::span<const Frame>(two.frames).first(1)).taken());
+  EXPECT_NEAR(evaluator.distance(Capsule::point({0, 0, 1.2})).nearest.distance_m, 0.0, 1e-9);
+  EXPECT_TRUE(update_all(evaluator, two.frames).taken());
+  EXPECT_EQ(evaluator.distance(Capsule::point({0, 0, 1.2})).nearest.state, ProximityState::beyond_rho);
 }
 
 TEST_P(BothVariants, AnUnusableFrameFreesNothing) {
@@ -134,12 +134,12 @@ TEST_P(BothVariants, AnUnusableFrameFreesNothing) {
   two.fill(1, 2.35F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
   const Eigen::Vector3d p(0, 0, 1.2);
-  ASSERT_TRUE(evaluator.update(two.frames));
-  ASSERT_EQ(evaluator.evaluate(p).nearest.state, ProximityState::beyond_rho);
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  ASSERT_EQ(evaluator.distance(Capsule::point(p)).nearest.state, ProximityState::beyond_rho);
   const auto refused = [&](auto&& change) {
     std::vector<Frame> frames = two.frames;
     change(frames[1]);
-    return !evaluator.update(frames) && evaluator.evaluate(p).nearest.distance_m < 1e-9;
+    return !update_all(evaluator, frames).taken() && evaluator.distance(Capsule::point(p)).nearest.distance_m < 1e-9;
   };
   EXPECT_TRUE(refused([](Frame& f) { f.robot.far_m = nullptr; })) << "half a robot view";
   EXPECT_TRUE(refused([](Frame& f) { f.robot.stride_px = 3; })) << "robot rows that overlap";
@@ -149,12 +149,12 @@ TEST_P(BothVariants, AnUnusableFrameFreesNothing) {
       << "another depth scale than the rig";
   std::vector<Frame> frames = two.frames;
   frames[1].depth = depth_view(units, kWidth, kHeight, 0.001);
-  EXPECT_TRUE(evaluator.update(frames));
+  EXPECT_TRUE(update_all(evaluator, frames).taken());
   frames[1] = two.frames[1];
   frames[1].depth.stride_bytes = 0;  // a view made by hand: rows without padding
   frames[1].robot.stride_px = 0;
-  EXPECT_TRUE(evaluator.update(frames));
-  EXPECT_EQ(evaluator.evaluate(p).nearest.state, ProximityState::beyond_rho);
+  EXPECT_TRUE(update_all(evaluator, frames).taken());
+  EXPECT_EQ(evaluator.distance(Capsule::point(p)).nearest.state, ProximityState::beyond_rho);
 }
 
 TEST_P(BothVariants, AnEndlessRobotIsNoRobot) {
@@ -164,8 +164,8 @@ TEST_P(BothVariants, AnEndlessRobotIsNoRobot) {
   std::fill(two.robot_near_m[0].begin(), two.robot_near_m[0].end(), 1.4F);
   std::fill(two.robot_far_m[0].begin(), two.robot_far_m[0].end(), std::numeric_limits<float>::infinity());
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  ASSERT_TRUE(evaluator.update(two.frames));
-  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.25}).nearest.distance_m, 0.2, 1e-6);
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  EXPECT_NEAR(evaluator.distance(Capsule::point({0, 0, 1.25})).nearest.distance_m, 0.2, 1e-6);
 }
 
 TEST_P(BothVariants, WhatTheRobotHidesIsNotMeasured) {
@@ -174,8 +174,8 @@ TEST_P(BothVariants, WhatTheRobotHidesIsNotMeasured) {
   std::fill(two.robot_near_m[0].begin(), two.robot_near_m[0].end(), 0.995F);
   std::fill(two.robot_far_m[0].begin(), two.robot_far_m[0].end(), 1.008F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  ASSERT_TRUE(evaluator.update(two.frames));
-  const Evaluation answer = evaluator.evaluate({0, 0, 0.9});
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  const Answer answer = evaluator.distance(Capsule::point({0, 0, 0.9}));
   EXPECT_LT(answer.nearest.distance_m, 0.13);
   EXPECT_EQ(answer.nearest.state, ProximityState::occluded);
 }
@@ -187,11 +187,11 @@ TEST_P(BothVariants, AbsurdRadiiAndPointsEndInAState) {
   EvaluationSettings settings = of(GetParam());
   settings.rho_m = 1e12;
   GridEvaluator evaluator = two.evaluator(settings);
-  ASSERT_TRUE(evaluator.update(two.frames));
-  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.7}).nearest.distance_m, 0.3, 1e-6);
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  EXPECT_NEAR(evaluator.distance(Capsule::point({0, 0, 1.7})).nearest.distance_m, 0.3, 1e-6);
   for (const double huge : {1e300, -1e308, 1.7e308}) {
-    EXPECT_EQ(evaluator.evaluate({huge, huge, huge}).nearest.state, ProximityState::outside);
-    EXPECT_EQ(evaluator.evaluate({huge, 0, 1}).nearest.state, ProximityState::outside);
+    EXPECT_EQ(evaluator.distance(Capsule::point({huge, huge, huge})).nearest.state, ProximityState::outside);
+    EXPECT_EQ(evaluator.distance(Capsule::point({huge, 0, 1})).nearest.state, ProximityState::outside);
   }
 }
 
@@ -199,10 +199,12 @@ TEST_P(BothVariants, AnswersWithoutAPointKeepNothing) {
   TwoCameras two;
   two.fill(0, 2.0F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  evaluator.update(two.frames);
-  std::vector<Evaluation> answers(2);
-  evaluator.evaluate(std::vector<Eigen::Vector3d>{{0, 0, 1.5}, {0, 0, 1.6}}, answers);
-  evaluator.evaluate(std::vector<Eigen::Vector3d>{{0, 0, 1.5}}, answers);
+  (void)update_all(evaluator, two.frames);
+  std::vector<Answer> answers(2);
+  const std::array<Capsule, 2> points{Capsule::point({0, 0, 1.5}), Capsule::point({0, 0, 1.6})};
+  evaluator.evaluate(points, 0, answers);
+  EXPECT_NE(answers[1].nearest.state, ProximityState::not_evaluated);
+  evaluator.evaluate(std::span(points).first(1), 0, answers);
   EXPECT_EQ(answers[1].nearest.state, ProximityState::not_evaluated);
 }
 
@@ -212,18 +214,18 @@ TEST_P(BothVariants, APoseThatIsSlightlyOffIsMadeExact) {
   two.fill(1, 0.9F);
   two.rig.cameras[0].T_world_camera.linear() *= 1.0004;
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  ASSERT_TRUE(evaluator.update(two.frames));
-  EXPECT_NEAR(evaluator.evaluate({0, 0, 1.7}).nearest.distance_m, 0.3, 1e-6);
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  EXPECT_NEAR(evaluator.distance(Capsule::point({0, 0, 1.7})).nearest.distance_m, 0.3, 1e-6);
 }
 
 TEST_P(BothVariants, PointsOutsideTheGridHaveNoDistance) {
   TwoCameras two;
   two.fill(0, 2.0F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  evaluator.update(two.frames);
+  (void)update_all(evaluator, two.frames);
   for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0, 0, 0.1), Eigen::Vector3d(0, 0, 5),
                                    Eigen::Vector3d(3, 0, 1), Eigen::Vector3d(0, 0, 0)}) {
-    const Evaluation answer = evaluator.evaluate(p);
+    const Answer answer = evaluator.distance(Capsule::point(p));
     EXPECT_EQ(answer.nearest.state, ProximityState::outside) << p.transpose();
     EXPECT_TRUE(std::isnan(answer.nearest.distance_m));
   }
@@ -236,17 +238,17 @@ TEST_P(BothVariants, SpaceOutsideTheGridAsObstacle) {
   EvaluationSettings settings = of(GetParam());
   settings.outside = OutsideSpace::obstacle;
   GridEvaluator evaluator = two.evaluator(settings);
-  evaluator.update(two.frames);
-  const Evaluation near_end = evaluator.evaluate({0, 0, 0.25});
+  (void)update_all(evaluator, two.frames);
+  const Answer near_end = evaluator.distance(Capsule::point({0, 0, 0.25}));
   EXPECT_EQ(near_end.nearest.state, ProximityState::outside);
   EXPECT_NEAR(near_end.nearest.distance_m, 0.05, 1e-12);
   EXPECT_LT((near_end.nearest.direction_world + Eigen::Vector3d::UnitZ()).norm(), 1e-9);
-  const Evaluation beyond = evaluator.evaluate({0, 0, 5});
+  const Answer beyond = evaluator.distance(Capsule::point({0, 0, 5}));
   EXPECT_EQ(beyond.nearest.distance_m, 0.0);
   // Ignored: the same point says how far its answer is known.
   GridEvaluator ignoring = two.evaluator(of(GetParam()));
-  ignoring.update(two.frames);
-  const Evaluation open = ignoring.evaluate({0, 0, 0.25});
+  (void)update_all(ignoring, two.frames);
+  const Answer open = ignoring.distance(Capsule::point({0, 0, 0.25}));
   EXPECT_EQ(open.nearest.state, ProximityState::beyond_rho);
   EXPECT_NEAR(open.nearest.known_to_m, 0.05, 1e-12);
   EXPECT_NEAR(lower_bound_after(open.nearest, 0.01, 1.0), 0.04, 1e-12) << "something may stand at the border";
@@ -256,12 +258,12 @@ TEST_P(BothVariants, NonFinitePointsAreNotEvaluated) {
   TwoCameras two;
   two.fill(0, 2.0F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  evaluator.update(two.frames);
+  (void)update_all(evaluator, two.frames);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int axis = 0; axis < 3; ++axis) {
       Eigen::Vector3d p(0, 0, 1.5);
       p[axis] = bad;
-      const Evaluation answer = evaluator.evaluate(p);
+      const Answer answer = evaluator.distance(Capsule::point(p));
       EXPECT_EQ(answer.nearest.state, ProximityState::not_evaluated);
       EXPECT_TRUE(std::isnan(answer.nearest.distance_m));
     }
@@ -277,21 +279,21 @@ TEST_P(BothVariants, TheRobotIsNoObstacleButWhatItHidesIs) {
     std::fill(two.robot_far_m[k].begin(), two.robot_far_m[k].end(), 1.6F);
   }
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  ASSERT_TRUE(evaluator.update(two.frames));
-  const Evaluation on_robot = evaluator.evaluate({0.01, 0.01, 1.5});
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  const Answer on_robot = evaluator.distance(Capsule::point({0.01, 0.01, 1.5}));
   EXPECT_EQ(on_robot.nearest.state, ProximityState::beyond_rho) << "each camera frees what is behind it for the other";
 
   // A hand in front of the robot's image is not inside the robot's interval: it stays an obstacle.
   two.fill(0, 1.2F);
-  ASSERT_TRUE(evaluator.update(two.frames));
-  const Evaluation hand = evaluator.evaluate({0.01, 0.01, 1.0});
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  const Answer hand = evaluator.distance(Capsule::point({0.01, 0.01, 1.0}));
   EXPECT_NEAR(hand.nearest.distance_m, 0.2, 0.011);
 
   // The back camera alone lost: the space behind the robot is unknown.
   two.fill(0, 1.45F);
   two.fill(1, 0.0F);
-  ASSERT_TRUE(evaluator.update(two.frames));
-  const Evaluation behind = evaluator.evaluate({0.01, 0.01, 1.55});
+  ASSERT_TRUE(update_all(evaluator, two.frames).taken());
+  const Answer behind = evaluator.distance(Capsule::point({0.01, 0.01, 1.55}));
   EXPECT_LT(behind.nearest.distance_m, 0.07);
   EXPECT_GT(behind.nearest.distance_m, 0.03);
 }
@@ -304,12 +306,12 @@ TEST_P(BothVariants, AnOldFrameMakesAnswersStale) {
   GridEvaluator evaluator = two.evaluator(settings);
   two.frames[0].time_s = 10.00;
   two.frames[1].time_s = 10.04;
-  evaluator.update(two.frames);
-  EXPECT_FALSE(evaluator.evaluate({0, 0, 1.5}).nearest.stale);
+  (void)update_all(evaluator, two.frames);
+  EXPECT_FALSE(evaluator.distance(Capsule::point({0, 0, 1.5})).nearest.stale);
   for (const double bad : {10.06, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     two.frames[1].time_s = bad;
-    evaluator.update(two.frames);
-    EXPECT_TRUE(evaluator.evaluate({0, 0, 1.5}).nearest.stale) << bad;
+    (void)update_all(evaluator, two.frames);
+    EXPECT_TRUE(evaluator.distance(Capsule::point({0, 0, 1.5})).nearest.stale) << bad;
   }
 }
 
@@ -322,11 +324,12 @@ TEST_P(BothVariants, TheCallsAllocateNothing) {
     EvaluationSettings settings = of(GetParam());
     settings.collect = collect;
     GridEvaluator evaluator = two.evaluator(settings);
-    const std::vector<Eigen::Vector3d> points{{0, 0, 1.2}, {0.1, 0.1, 1.4}, {0, 0, 9}};
-    std::vector<Evaluation> answers(points.size());
+    const std::vector<Capsule> points{Capsule::point({0, 0, 1.2}), Capsule::point({0.1, 0.1, 1.4}),
+                                      Capsule::point({0, 0, 9})};
+    std::vector<Answer> answers(points.size());
     const test::AllocationGuard guard;
-    evaluator.update(two.frames);
-    evaluator.evaluate(points, answers);
+    (void)update_all(evaluator, two.frames);
+    evaluator.evaluate(points, 0, answers);
     EXPECT_EQ(guard.allocations(), 0);
   }
 }
@@ -336,18 +339,18 @@ TEST_P(BothVariants, ManyThreadsGetTheSameAnswers) {
   two.fill(0, 0.7F);
   two.fill(1, 1.4F);
   GridEvaluator evaluator = two.evaluator(of(GetParam()));
-  evaluator.update(two.frames);
-  std::vector<Eigen::Vector3d> points;
+  (void)update_all(evaluator, two.frames);
+  std::vector<Capsule> points;
   for (int i = 0; i < 40; ++i) {
-    points.emplace_back(0.01 * i - 0.2, 0.05, 1.0 + 0.02 * i);
+    points.push_back(Capsule::point({0.01 * i - 0.2, 0.05, 1.0 + 0.02 * i}));
   }
-  std::vector<Evaluation> expected(points.size());
-  evaluator.evaluate(points, expected);
-  std::vector<std::vector<Evaluation>> answers(4, std::vector<Evaluation>(points.size()));
+  std::vector<Answer> expected(points.size());
+  evaluator.evaluate(points, 0, expected);
+  std::vector<std::vector<Answer>> answers(4, std::vector<Answer>(points.size()));
   std::vector<std::thread> threads;
   threads.reserve(answers.size());
   for (auto& mine : answers) {
-    threads.emplace_back([&] { evaluator.evaluate(points, mine); });
+    threads.emplace_back([&] { evaluator.evaluate(points, 0, mine); });
   }
   for (std::thread& thread : threads) {
     thread.join();
@@ -367,8 +370,8 @@ TEST(Corrected, MarginsOnlyBringObstaclesNearer) {
   const Eigen::Vector3d p(0.01, 0.01, 1.7);
   const auto distance = [&](const EvaluationSettings& settings) {
     GridEvaluator evaluator = two.evaluator(settings);
-    evaluator.update(two.frames);
-    return evaluator.evaluate(p).nearest.distance_m;
+    (void)update_all(evaluator, two.frames);
+    return evaluator.distance(Capsule::point(p)).nearest.distance_m;
   };
   EvaluationSettings settings = of(Variant::corrected);
   const double ideal = distance(settings);

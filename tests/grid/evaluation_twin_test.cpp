@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "depthgrid/grid/cell_carver.hpp"
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "grid/letter_twin.hpp"
 #include "reference/random_problem.hpp"
 #include "support/random_run.hpp"
@@ -82,9 +82,9 @@ TEST(LetterScan, EqualsTheLetterWordForWord) {
       EvaluationSettings settings = settings_of(problem, Variant::letter, Collect::hybrid);
       settings.window = window;
       GridEvaluator evaluator(problem.rig, problem.principal, grid.quantisation(), settings);
-      ASSERT_TRUE(evaluator.update(problem.frames));
+      ASSERT_TRUE(update_all(evaluator, problem.frames).taken());
       for (const Eigen::Vector3d& p_world : problem.points_world) {
-        const Evaluation fast = evaluator.evaluate(p_world);
+        const Answer fast = evaluator.distance(Capsule::point(p_world));
         if (fast.nearest.state == ProximityState::outside) {
           continue;
         }
@@ -152,9 +152,9 @@ TEST(CorrectedScan, EqualsTheNearestOfAllCells) {
         const std::vector<Observation> observations = observe(problem, &problem.sensor);
         const EvaluationSettings settings = settings_of(problem, Variant::corrected, Collect::minimum);
         GridEvaluator evaluator(problem.rig, problem.principal, grid.quantisation(), settings);
-        ASSERT_TRUE(evaluator.update(problem.frames));
+        ASSERT_TRUE(update_all(evaluator, problem.frames).taken());
         for (const Eigen::Vector3d& p_world : problem.points_world) {
-          const Evaluation fast = evaluator.evaluate(p_world);
+          const Answer fast = evaluator.distance(Capsule::point(p_world));
           if (fast.nearest.state == ProximityState::outside) {
             continue;
           }
@@ -179,13 +179,13 @@ TEST(SmartScan, FindsTheMinimumOfTheWholeScan) {
                         settings_of(problem, variant, Collect::hybrid));
       GridEvaluator smart(problem.rig, problem.principal, quantisation_of(problem),
                           settings_of(problem, variant, Collect::minimum));
-      ASSERT_TRUE(all.update(problem.frames));
-      ASSERT_TRUE(smart.update(problem.frames));
+      ASSERT_TRUE(update_all(all, problem.frames).taken());
+      ASSERT_TRUE(update_all(smart, problem.frames).taken());
       for (const Eigen::Vector3d& p_world : problem.points_world) {
         EvaluationCount all_count;
         EvaluationCount smart_count;
-        const Evaluation a = all.evaluate(p_world, &all_count);
-        const Evaluation b = smart.evaluate(p_world, &smart_count);
+        const Answer a = all.distance(Capsule::point(p_world), &all_count);
+        const Answer b = smart.distance(Capsule::point(p_world), &smart_count);
         ASSERT_EQ(has_distance(a.nearest), has_distance(b.nearest));
         if (has_distance(a.nearest)) {
           EXPECT_NEAR(a.nearest.distance_m, b.nearest.distance_m, 1e-9) << p_world.transpose();
@@ -202,11 +202,11 @@ TEST(CorrectedScan, TheWindowOfTheSphereLosesNothing) {
     GridEvaluator window(problem.rig, problem.principal, quantisation_of(problem), settings);
     settings.window = Window::whole_image;
     GridEvaluator image(problem.rig, problem.principal, quantisation_of(problem), settings);
-    ASSERT_TRUE(window.update(problem.frames));
-    ASSERT_TRUE(image.update(problem.frames));
+    ASSERT_TRUE(update_all(window, problem.frames).taken());
+    ASSERT_TRUE(update_all(image, problem.frames).taken());
     for (const Eigen::Vector3d& p_world : problem.points_world) {
-      const Evaluation a = window.evaluate(p_world);
-      const Evaluation b = image.evaluate(p_world);
+      const Answer a = window.distance(Capsule::point(p_world));
+      const Answer b = image.distance(Capsule::point(p_world));
       if (has_distance(a.nearest)) {
         EXPECT_NEAR(a.nearest.distance_m, b.nearest.distance_m, 1e-12) << p_world.transpose();
       }
@@ -219,9 +219,9 @@ TEST(CorrectedScan, HybridDirectionIsLedByTheNearest) {
     EvaluationSettings settings = settings_of(problem, Variant::corrected, Collect::hybrid);
     settings.direction_blend = 1.0;
     GridEvaluator evaluator(problem.rig, problem.principal, quantisation_of(problem), settings);
-    ASSERT_TRUE(evaluator.update(problem.frames));
+    ASSERT_TRUE(update_all(evaluator, problem.frames).taken());
     for (const Eigen::Vector3d& p_world : problem.points_world) {
-      const Evaluation answer = evaluator.evaluate(p_world);
+      const Answer answer = evaluator.distance(Capsule::point(p_world));
       if (answer.obstacle_points > 0 && answer.nearest.distance_m > 0) {
         EXPECT_NEAR(answer.hybrid_direction_world.norm(), 1.0, 1e-9);
         EXPECT_GE(answer.hybrid_direction_world.dot(answer.nearest.direction_world), std::sqrt(0.5) - 1e-9);

@@ -87,12 +87,12 @@ TEST(Campaign, FindsWrongAnswers) {
   reference::RandomOptions options;
   options.seed = 1;
   const reference::SearchProblem problem = reference::make_search_problem(options, kQueriesPerProblem);
-  std::vector<search::Answer> answers = reference::SearchRun(problem).distances();
+  std::vector<Answer> answers = reference::SearchRun(problem).distances();
   Tally right;
   examine_answers(problem, answers, right);
   EXPECT_EQ(right.faults(reference::Fault::over_estimate), 0);
   std::int64_t spoilt = 0;
-  for (search::Answer& answer : answers) {
+  for (Answer& answer : answers) {
     if (answer.nearest.nearest_world.allFinite() && answer.nearest.distance_m > 0) {
       answer.nearest.distance_m += 0.1;
       ++spoilt;

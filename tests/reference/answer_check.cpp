@@ -87,7 +87,7 @@ const char* to_string(Fault fault) {
   return kNames.at(static_cast<std::size_t>(fault));
 }
 
-AnswerCheck::Soundness AnswerCheck::soundness(const Capsule& asked, const search::Answer& answer) const {
+AnswerCheck::Soundness AnswerCheck::soundness(const Capsule& asked, const Answer& answer) const {
   Soundness result;
   const double answer_m = answer.nearest.distance_m;
   if (!(answer_m > 0)) {
@@ -110,7 +110,7 @@ AnswerCheck::Soundness AnswerCheck::soundness(const Capsule& asked, const search
   return result;
 }
 
-std::optional<Finding> AnswerCheck::form(const Capsule& asked, const search::Answer& answer) const {
+std::optional<Finding> AnswerCheck::form(const Capsule& asked, const Answer& answer) const {
   const Primitive primitive = to_reference(asked);
   if (const auto what = implausible(primitive, answer)) {
     return Finding{Fault::implausible, *what};
@@ -127,7 +127,7 @@ std::optional<Finding> AnswerCheck::form(const Capsule& asked, const search::Ans
   return std::nullopt;
 }
 
-std::optional<std::string> AnswerCheck::implausible(const Primitive& primitive, const search::Answer& answer) const {
+std::optional<std::string> AnswerCheck::implausible(const Primitive& primitive, const Answer& answer) const {
   const Proximity& nearest = answer.nearest;
   const bool outside_ignored = problem_->problem.outside == Policy::ignored;
   const bool missing = std::any_of(problem_->frames.begin(), problem_->frames.end(),
@@ -171,7 +171,7 @@ std::optional<std::string> AnswerCheck::implausible(const Primitive& primitive, 
   return std::nullopt;
 }
 
-std::optional<std::string> AnswerCheck::not_tight(const Primitive& primitive, const search::Answer& answer) const {
+std::optional<std::string> AnswerCheck::not_tight(const Primitive& primitive, const Answer& answer) const {
   const Vector3d& w = answer.nearest.nearest_world;
   const double axis_m = axis_distance_m(primitive, w);
   const double distance_m = std::max(0.0, axis_m - primitive.radius_m);
@@ -215,7 +215,7 @@ std::optional<std::string> AnswerCheck::not_tight(const Primitive& primitive, co
   return counts ? std::nullopt : std::optional<std::string>("no camera covers the nearest point");
 }
 
-std::optional<std::string> AnswerCheck::implausible_state(const Vector3d& w, const search::Answer& answer) const {
+std::optional<std::string> AnswerCheck::implausible_state(const Vector3d& w, const Answer& answer) const {
   bool measured = false;
   bool occluded = false;
   bool unmeasured = false;

@@ -34,7 +34,7 @@ class AnswerCheck {
   explicit AnswerCheck(const SearchProblem& problem) : problem_(&problem), oracle_(problem.oracle.get()) {}
 
   /// Everything but soundness: form, state and, where no budget stopped it, tightness.
-  [[nodiscard]] std::optional<Finding> form(const Capsule& primitive, const search::Answer& answer) const;
+  [[nodiscard]] std::optional<Finding> form(const Capsule& primitive, const Answer& answer) const;
 
   struct Soundness {
     std::optional<Finding> finding;
@@ -42,13 +42,13 @@ class AnswerCheck {
     std::int64_t boxes = 0;  ///< that the oracle looked at
   };
   /// No point of O is nearer than the answer.
-  [[nodiscard]] Soundness soundness(const Capsule& primitive, const search::Answer& answer) const;
+  [[nodiscard]] Soundness soundness(const Capsule& primitive, const Answer& answer) const;
 
  private:
-  [[nodiscard]] std::optional<std::string> implausible(const Primitive& primitive, const search::Answer& answer) const;
+  [[nodiscard]] std::optional<std::string> implausible(const Primitive& primitive, const Answer& answer) const;
   [[nodiscard]] std::optional<std::string> implausible_state(const Eigen::Vector3d& nearest_world,
-                                                             const search::Answer& answer) const;
-  [[nodiscard]] std::optional<std::string> not_tight(const Primitive& primitive, const search::Answer& answer) const;
+                                                             const Answer& answer) const;
+  [[nodiscard]] std::optional<std::string> not_tight(const Primitive& primitive, const Answer& answer) const;
 
   const SearchProblem* problem_;
   const Reference* oracle_;

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <vector>
 
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "reference/random_problem.hpp"
 #include "reference/reference.hpp"
 #include "support/random_run.hpp"
@@ -26,7 +26,7 @@ grid::GridEvaluator make_evaluator(const RandomProblem& random) {
   settings.pose = random.pose;
   const grid::DepthQuantisation quantisation{random.d_min_m, random.step_m, 0.0, random.cell_count};
   grid::GridEvaluator evaluator(random.rig, random.principal, quantisation, settings);
-  evaluator.update(random.frames);
+  (void)update_all(evaluator, random.frames);
   return evaluator;
 }
 
@@ -48,7 +48,7 @@ TEST(GridAgainstReference, CorrectedNeverOverEstimates) {
     const grid::GridEvaluator evaluator = make_evaluator(random);
     for (const Eigen::Vector3d& p_world : random.points_world) {
       const Interval interval = reference.distance(p_world);
-      const double answer_m = evaluator.evaluate(p_world).nearest.distance_m;
+      const double answer_m = evaluator.distance(Capsule::point(p_world)).nearest.distance_m;
       ASSERT_LE(answer_m, interval.hi_m.value_or(random.rho_m) + kRoundingM)
           << "problem " << to_line(options) << ", point " << p_world.transpose() << ", interval [" << interval.lo_m
           << ", " << interval.hi_m.value_or(random.rho_m) << "]; again with " << run.reproduce();

@@ -21,7 +21,7 @@ TEST(SearchAgainstReference, NeverOverEstimatesAndIsTight) {
     RandomOptions options;
     options.seed = run.seed + static_cast<std::uint64_t>(i);
     const SearchProblem problem = make_search_problem(options, kQueries);
-    const std::vector<search::Answer> answers = SearchRun(problem).distances();
+    const std::vector<Answer> answers = SearchRun(problem).distances();
     const AnswerCheck check(problem);
     for (std::size_t q = 0; q < answers.size(); ++q) {
       ++asked;

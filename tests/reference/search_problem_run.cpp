@@ -22,14 +22,14 @@ views::Snapshot deliver(const SearchProblem& problem, views::ViewStore& store) {
 SearchRun::SearchRun(const SearchProblem& problem)
     : problem_(&problem), store_(problem.rig, problem.settings, 1), snapshot_(deliver(problem, store_)) {}
 
-std::vector<search::Answer> SearchRun::distances(const search::Budget& budget) {
-  std::vector<search::Answer> answers(problem_->primitives.size());
+std::vector<Answer> SearchRun::distances(const search::Budget& budget) {
+  std::vector<Answer> answers(problem_->primitives.size());
   search_.distances(snapshot_, problem_->primitives, answers, budget);
   return answers;
 }
 
-std::vector<search::Answer> SearchRun::hybrid() {
-  std::vector<search::Answer> answers(problem_->primitives.size());
+std::vector<Answer> SearchRun::hybrid() {
+  std::vector<Answer> answers(problem_->primitives.size());
   search_.hybrid(snapshot_, problem_->primitives, answers);
   return answers;
 }

@@ -14,8 +14,8 @@ class SearchRun {
   explicit SearchRun(const SearchProblem& problem);
 
   /// To all primitives, in one call.
-  [[nodiscard]] std::vector<search::Answer> distances(const search::Budget& budget = {});
-  [[nodiscard]] std::vector<search::Answer> hybrid();
+  [[nodiscard]] std::vector<Answer> distances(const search::Budget& budget = {});
+  [[nodiscard]] std::vector<Answer> hybrid();
 
  private:
   const SearchProblem* problem_;

@@ -78,11 +78,11 @@ TEST(RemovalSearch, LinksAreNoObstacleAndAHandIs) {
     const auto nearest_m = [&](const RobotView& robot) {
       frame.robot = robot;
       views::ViewStore store(rig, settings());
-      EXPECT_EQ(store.update(0, frame), views::UpdateResult::taken);
-      std::vector<search::Answer> answers(primitives.size());
+      EXPECT_EQ(store.update(0, frame).result, UpdateResult::taken);
+      std::vector<Answer> answers(primitives.size());
       search::Search().distances(store.snapshot(), primitives, answers);
       double least = 1;
-      for (const search::Answer& answer : answers) {
+      for (const Answer& answer : answers) {
         least = std::min(least, answer.nearest.distance_m);
       }
       return least;

@@ -54,10 +54,10 @@ TEST(NoAllocation, FromImageToAnswer) {
     views::Snapshot snapshot = store.snapshot();
     views::Snapshot other = store.snapshot();
     search.distances(snapshot, primitives, answers);
-    search.distances(other, primitives, answers, {10, 0}, &count);
-    search.distances(other, primitives, answers, {0, 1e-6}, &count);
+    search.distances(other, primitives, answers, {.nodes = 10}, &count);
+    search.distances(other, primitives, answers, {.time_s = 1e-6}, &count);
     search.hybrid(snapshot, primitives, answers);
-    search.hybrid(snapshot, primitives, answers, {50, 0}, &count);
+    search.hybrid(snapshot, primitives, answers, {.nodes = 50}, &count);
     snapshot = std::move(other);
     EXPECT_EQ(guard.allocations(), 0) << reference::to_line(options);
     EXPECT_GT(count.nodes, 0);

@@ -77,8 +77,9 @@ class Scene {
     settings.v_max_m_s = 0;
     store_.emplace(rig, settings);
     EXPECT_EQ(
-        store_->update(0, {depth_view(depth_m_, width_px, height_px), {near_m_.data(), far_m_.data(), width_px}, 1.0}),
-        views::UpdateResult::taken);
+        store_->update(0, {depth_view(depth_m_, width_px, height_px), {near_m_.data(), far_m_.data(), width_px}, 1.0})
+            .result,
+        UpdateResult::taken);
     snapshot_.emplace(store_->snapshot());
     make_local(*snapshot_, 0, Vector3d::Zero(), 6, local_);
   }

@@ -27,7 +27,7 @@ TEST(Budget, OfMoreNodesGivesALargerBoundUpToTheWholeAnswer) {
       double before_m = 0;
       bool finished = false;
       for (std::int64_t nodes = 1; nodes <= (std::int64_t{1} << 40); nodes = nodes < 40 ? nodes + 1 : nodes * 2) {
-        const Proximity part = asker.distance(primitive, {nodes, 0}).nearest;
+        const Proximity part = asker.distance(primitive, {.nodes = nodes}).nearest;
         ASSERT_FALSE(std::isnan(part.distance_m)) << nodes << " nodes";
         EXPECT_GE(part.distance_m, before_m) << nodes << " nodes";
         EXPECT_LE(part.distance_m, whole.distance_m) << nodes << " nodes";
@@ -63,7 +63,7 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
     opened += all.nodes;
     for (const std::int64_t nodes : {std::int64_t{1}, all.nodes / 8, all.nodes / 2}) {
       Count count;
-      asker.search().distances(asker.snapshot(), primitives, part, {std::max<std::int64_t>(nodes, 1), 0}, &count);
+      asker.search().distances(asker.snapshot(), primitives, part, {.nodes = std::max<std::int64_t>(nodes, 1)}, &count);
       bool stopped = false;
       for (std::size_t i = 0; i < part.size(); ++i) {
         ASSERT_FALSE(std::isnan(part[i].nearest.distance_m)) << "primitive " << i;
@@ -85,7 +85,7 @@ TEST(Budget, OfTimeGivesALowerBound) {
     for (const Vector3d& p_world : problem.points_world) {
       const Proximity whole = asker.distance(Capsule::point(p_world)).nearest;
       for (const double time_s : {1e-12, 1e-6, 1e-5, 1e-4}) {
-        const Proximity part = asker.distance(Capsule::point(p_world), {0, time_s}).nearest;
+        const Proximity part = asker.distance(Capsule::point(p_world), {.time_s = time_s}).nearest;
         ASSERT_FALSE(std::isnan(part.distance_m)) << time_s << " s";
         EXPECT_LE(part.distance_m, whole.distance_m) << time_s << " s";
         EXPECT_TRUE(part.budget || part.distance_m == whole.distance_m) << time_s << " s";
@@ -107,9 +107,9 @@ TEST(Budget, OfTimeThatIsOverOpensNothingHoweverManyPrimitivesThereAre) {
     }
     std::vector<Answer> answers(primitives.size());
     Count count;
-    asker.search().distances(asker.snapshot(), primitives, answers, Budget{0, 1e-9}, &count);
+    asker.search().distances(asker.snapshot(), primitives, answers, Budget{.time_s = 1e-9}, &count);
     EXPECT_EQ(count.nodes, 0);
-    asker.search().hybrid(asker.snapshot(), primitives, answers, Budget{0, 1e-9}, &count);
+    asker.search().hybrid(asker.snapshot(), primitives, answers, Budget{.time_s = 1e-9}, &count);
     EXPECT_EQ(count.nodes, 0);
   });
 }

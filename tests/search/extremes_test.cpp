@@ -278,13 +278,13 @@ TEST(Snapshots, KnowWhereACameraWithoutAFrameStands) {
   EXPECT_EQ(distance_m(before_moved), 0.2) << "no frame yet";
   Frame unusable;
   for (int i = 0; i < 5; ++i) {  // every buffer once
-    EXPECT_EQ(store.update(0, one.setup.frames[0], moved), views::UpdateResult::taken);
+    EXPECT_EQ(store.update(0, one.setup.frames[0], moved).result, UpdateResult::taken);
     EXPECT_EQ(distance_m(before_rig), 0.2) << "moved away";
-    EXPECT_EQ(store.update(0, unusable), views::UpdateResult::unusable);
+    EXPECT_EQ(store.update(0, unusable).result, UpdateResult::unusable);
     EXPECT_EQ(distance_m(before_rig), 0) << "an unusable frame from where the rig says, " << i;
     EXPECT_EQ(distance_m(before_moved), 0.2) << "an unusable frame from where the rig says, " << i;
-    EXPECT_EQ(store.update(0, one.setup.frames[0]), views::UpdateResult::taken);
-    EXPECT_EQ(store.update(0, unusable, moved), views::UpdateResult::unusable);
+    EXPECT_EQ(store.update(0, one.setup.frames[0]).result, UpdateResult::taken);
+    EXPECT_EQ(store.update(0, unusable, moved).result, UpdateResult::unusable);
     EXPECT_EQ(distance_m(before_moved), 0) << "an unusable frame from elsewhere, " << i;
     EXPECT_EQ(distance_m(before_rig), 0.2) << "an unusable frame from elsewhere, " << i;
   }

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/simulation/scene.hpp"
 #include "search/search_setup.hpp"
 
@@ -238,11 +238,11 @@ TEST(HybridDirection, IsComparableWithTheGrids) {
     settings.pose = problem.pose;
     grid::GridEvaluator evaluator(problem.rig, problem.principal,
                                   {problem.d_min_m, problem.step_m, 0.0, problem.cell_count}, settings);
-    evaluator.update(problem.frames);
+    (void)update_all(evaluator, problem.frames);
     Asker asker(setup);
     for (const Vector3d& p_world : problem.points_world) {
       const Answer ours = asker.hybrid(Capsule::point(p_world));
-      const grid::Evaluation theirs = evaluator.evaluate(p_world);
+      const Answer theirs = evaluator.distance(Capsule::point(p_world));
       // Only where both have the same nearest obstacle, else they are led by different ones.
       if (!(ours.nearest.distance_m > 0.02 && theirs.nearest.distance_m > 0.02 &&
             ours.nearest.distance_m < 0.9 * problem.rho_m && theirs.nearest.distance_m < 0.9 * problem.rho_m &&
@@ -268,7 +268,7 @@ TEST(HybridDirection, WithABudgetThatRunsOutStandsBesideALowerBound) {
       const double whole_m = asker.distance(primitive).nearest.distance_m;
       for (std::int64_t nodes = 1; nodes < 100'000; nodes *= 3) {
         Answer part;
-        asker.search().hybrid(asker.snapshot(), {&primitive, 1}, {&part, 1}, {nodes, 0});
+        asker.search().hybrid(asker.snapshot(), {&primitive, 1}, {&part, 1}, {.nodes = nodes});
         ASSERT_FALSE(std::isnan(part.nearest.distance_m)) << nodes << " nodes";
         EXPECT_LE(part.nearest.distance_m, whole_m) << nodes << " nodes";
       }

@@ -90,7 +90,7 @@ std::vector<std::uint64_t> answer_everything(std::uint64_t seed, bool hybrid) {
   const std::vector<Capsule> primitives = random_primitives(problem, random);
   std::vector<Answer> answers(primitives.size());
   Count count;
-  for (const Budget& budget : {Budget{}, Budget{40, 0}}) {
+  for (const Budget& budget : {Budget{}, Budget{.nodes = 40}}) {
     if (hybrid) {
       asker.search().hybrid(asker.snapshot(), primitives, answers, budget, &count);
     } else {

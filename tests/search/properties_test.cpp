@@ -277,7 +277,7 @@ TEST(Properties, PosesOfFramesAreThoseOfTheRig) {
     }
     views::ViewStore store(elsewhere, setup.settings);
     for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-      ASSERT_EQ(store.update(k, setup.frames[k], setup.rig.cameras[k].T_world_camera), views::UpdateResult::taken);
+      ASSERT_EQ(store.update(k, setup.frames[k], setup.rig.cameras[k].T_world_camera).result, UpdateResult::taken);
     }
     Asker asker(setup);
     Search search;
@@ -383,7 +383,7 @@ TEST(Properties, OnlyTheNewestFramesCount) {
     const auto take = [](views::ViewStore& store, const SearchSetup& setup, int times) {
       for (int n = 0; n < times; ++n) {
         for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-          ASSERT_EQ(store.update(k, setup.frames[k]), views::UpdateResult::taken);
+          ASSERT_EQ(store.update(k, setup.frames[k]).result, UpdateResult::taken);
         }
       }
     };

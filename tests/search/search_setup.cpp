@@ -85,7 +85,7 @@ reference::Problem oracle_problem(const SearchSetup& setup, double grown_m, doub
 Asker::Asker(const SearchSetup& setup)
     : store_(std::make_unique<views::ViewStore>(setup.rig, setup.settings)), snapshot_([&] {
         for (std::size_t k = 0; k < setup.frames.size(); ++k) {
-          EXPECT_EQ(store_->update(k, setup.frames[k]), views::UpdateResult::taken) << "camera " << k;
+          EXPECT_EQ(store_->update(k, setup.frames[k]).result, UpdateResult::taken) << "camera " << k;
         }
         return store_->snapshot();
       }()) {}

@@ -91,7 +91,7 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
       views::ViewStore store(deliveries.setup.rig, deliveries.setup.settings);
       for (std::size_t k = 0; k < kCameras; ++k) {
         const std::size_t i = (set >> k) & 1U;
-        ASSERT_EQ(store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]), views::UpdateResult::taken);
+        ASSERT_EQ(store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]).result, UpdateResult::taken);
       }
       Search search;
       std::vector<Answer> answers(primitives.size());
@@ -117,9 +117,9 @@ TEST(Threads, EveryAnswerIsThatOfOneSetOfFrames) {
         Random random(k);  // no rhythm: each buffer gets one frame as well as the other
         while (!stop.load()) {
           const std::size_t i = random.chance(0.5) ? 1 : 0;
-          const auto result = store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]);
-          dropped += result == views::UpdateResult::dropped ? 1 : 0;
-          EXPECT_NE(result, views::UpdateResult::unusable);
+          const auto result = store.update(k, deliveries.frames[i][k], deliveries.poses[i][k]).result;
+          dropped += result == UpdateResult::dropped ? 1 : 0;
+          EXPECT_NE(result, UpdateResult::unusable);
         }
       });
     }

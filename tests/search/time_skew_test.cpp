@@ -117,7 +117,7 @@ Lost count_lost(SearchSetup setup, const Crossing& crossing, const std::vector<d
     }
     const Exposures exposures(setup.rig, crossing, stamped_s, taken_s);
     for (std::size_t k = 0; k < exposures.frames.size(); ++k) {
-      EXPECT_EQ(store.update(k, exposures.frames[k]), views::UpdateResult::taken);
+      EXPECT_EQ(store.update(k, exposures.frames[k]).result, UpdateResult::taken);
     }
     const views::Snapshot snapshot = store.snapshot();
     EXPECT_EQ(snapshot.reference_time_s(), t_ref_s);

@@ -61,10 +61,10 @@ TEST(ViewStore, FreesNothingBeforeTheFirstFrame) {
 
 TEST(ViewStore, ASnapshotKeepsWhatItShowed) {
   ViewStore store(rig_of(2), settings_for(2));
-  EXPECT_EQ(store.update(0, Wall(1.0F, 10.0).frame()), UpdateResult::taken);
+  EXPECT_EQ(store.update(0, Wall(1.0F, 10.0).frame()).result, UpdateResult::taken);
   const Snapshot first = store.snapshot();
-  EXPECT_EQ(store.update(0, Wall(2.0F, 10.1).frame()), UpdateResult::taken);
-  EXPECT_EQ(store.update(1, Wall(3.0F, 10.2).frame()), UpdateResult::taken);
+  EXPECT_EQ(store.update(0, Wall(2.0F, 10.1).frame()).result, UpdateResult::taken);
+  EXPECT_EQ(store.update(1, Wall(3.0F, 10.2).frame()).result, UpdateResult::taken);
   const Snapshot second = store.snapshot();
   EXPECT_EQ(free_m(first, 0), 1.0F);
   EXPECT_EQ(free_m(first, 1), 0.0F);
@@ -82,20 +82,20 @@ TEST(ViewStore, DropsAFrameOnlyWhenHeldSnapshotsOccupyEveryBuffer) {
     std::vector<Snapshot> snapshots;
     float depth_m = 1;
     for (int n = 0; n <= held; ++n, ++depth_m) {
-      ASSERT_EQ(store.update(0, Wall(depth_m).frame()), UpdateResult::taken) << held << " held, frame " << n;
+      ASSERT_EQ(store.update(0, Wall(depth_m).frame()).result, UpdateResult::taken) << held << " held, frame " << n;
       snapshots.push_back(store.snapshot());
     }
     // One snapshot more than promised is held: the newest image is pinned, and every other buffer.
-    ASSERT_EQ(store.update(0, Wall(depth_m).frame()), UpdateResult::taken) << "the last buffer";
-    EXPECT_EQ(store.update(0, Wall(99).frame()), UpdateResult::dropped);
+    ASSERT_EQ(store.update(0, Wall(depth_m).frame()).result, UpdateResult::taken) << "the last buffer";
+    EXPECT_EQ(store.update(0, Wall(99).frame()).result, UpdateResult::dropped);
     EXPECT_EQ(free_m(store.snapshot()), depth_m) << "the frame before stays the newest";
     for (int n = 0; n <= held; ++n) {
       EXPECT_EQ(free_m(snapshots[static_cast<std::size_t>(n)]), static_cast<float>(n + 1));
     }
     snapshots.erase(snapshots.begin());
-    EXPECT_EQ(store.update(0, Wall(99).frame()), UpdateResult::taken) << "a release makes room";
+    EXPECT_EQ(store.update(0, Wall(99).frame()).result, UpdateResult::taken) << "a release makes room";
     for (int n = 0; n < 40; ++n) {
-      EXPECT_EQ(store.update(0, Wall(100).frame()), UpdateResult::taken)
+      EXPECT_EQ(store.update(0, Wall(100).frame()).result, UpdateResult::taken)
           << "without new snapshots there is always room";
     }
   }
@@ -105,7 +105,7 @@ TEST(ViewStore, MovedSnapshotsReleaseOnce) {
   ViewStore store(rig_of(1), settings_for(1), 1);
   for (int n = 1; n < 50; ++n) {
     const auto depth_m = static_cast<float>(n);
-    ASSERT_EQ(store.update(0, Wall(depth_m).frame()), UpdateResult::taken) << n;
+    ASSERT_EQ(store.update(0, Wall(depth_m).frame()).result, UpdateResult::taken) << n;
     Snapshot a = store.snapshot();
     Snapshot b = std::move(a);
     Snapshot& same = b;
@@ -121,26 +121,26 @@ TEST(ViewStore, MovedSnapshotsReleaseOnce) {
 
 TEST(ViewStore, AnUnusableFrameFreesNothing) {
   ViewStore store(rig_of(2), settings_for(2));
-  ASSERT_EQ(store.update(0, Wall(1.0F).frame()), UpdateResult::taken);
-  EXPECT_EQ(store.update(0, Frame{}), UpdateResult::unusable);
+  ASSERT_EQ(store.update(0, Wall(1.0F).frame()).result, UpdateResult::taken);
+  EXPECT_EQ(store.update(0, Frame{}).result, UpdateResult::unusable);
   EXPECT_EQ(free_m(store.snapshot()), 0.0F);
   EXPECT_FALSE(store.snapshot().view(0).present());
-  EXPECT_EQ(store.update(2, Wall(1.0F).frame()), UpdateResult::unusable) << "no such camera";
-  EXPECT_EQ(store.update(99, Wall(1.0F).frame(), Pose::Identity()), UpdateResult::unusable) << "no such camera";
+  EXPECT_EQ(store.update(2, Wall(1.0F).frame()).result, UpdateResult::unusable) << "no such camera";
+  EXPECT_EQ(store.update(99, Wall(1.0F).frame(), Pose::Identity()).result, UpdateResult::unusable) << "no such camera";
 }
 
 TEST(ViewStore, SaysWhyAFrameIsUnusable) {
   ViewStore store(rig_of(2), settings_for(2));
   const Wall wall(1.0F);
-  EXPECT_EQ(store.why_unusable(0, wall.frame()), nullptr);
-  EXPECT_EQ(store.why_unusable(1, wall.frame(), Pose::Identity()), nullptr);
+  EXPECT_EQ(store.update(0, wall.frame()).reason, nullptr);
+  EXPECT_EQ(store.update(1, wall.frame(), Pose::Identity()).reason, nullptr);
   const auto expect = [&](const char* words, const auto& change) {
     Frame frame = wall.frame();
     change(frame);
-    const char* reason = store.why_unusable(0, frame);
-    ASSERT_NE(reason, nullptr) << words;
-    EXPECT_NE(std::string(reason).find(words), std::string::npos) << reason;
-    EXPECT_EQ(store.update(0, frame), UpdateResult::unusable) << words;
+    const FrameUpdate update = store.update(0, frame);
+    EXPECT_EQ(update.result, UpdateResult::unusable) << words;
+    ASSERT_NE(update.reason, nullptr) << words;
+    EXPECT_NE(std::string(update.reason).find(words), std::string::npos) << update.reason;
   };
   const float some_m = 1.0F;
   expect("no depth image", [](Frame& f) { f.depth.data = nullptr; });
@@ -152,30 +152,30 @@ TEST(ViewStore, SaysWhyAFrameIsUnusable) {
     f.depth.format = DepthFormat::uint16_units;
     f.depth.metres_per_unit = 0.5;
   });
-  EXPECT_NE(store.why_unusable(2, wall.frame()), nullptr) << "no such camera";
+  EXPECT_NE(store.update(2, wall.frame()).reason, nullptr) << "no such camera";
   Pose broken = Pose::Identity();
   broken.translation().x() = kNaN;
-  EXPECT_NE(store.why_unusable(0, wall.frame(), broken), nullptr);
+  EXPECT_NE(store.update(0, wall.frame(), broken).reason, nullptr);
 }
 
 TEST(ViewStore, MovesACameraWithItsFrame) {
   ViewStore store(rig_of(2), settings_for(2));
   const Wall wall(1.0F);
-  EXPECT_EQ(store.update(1, wall.frame()), UpdateResult::taken);
+  EXPECT_EQ(store.update(1, wall.frame()).result, UpdateResult::taken);
   EXPECT_EQ(store.snapshot().view(1).T_world_camera().translation().x(), 1.0) << "where the rig says";
   Pose moved = Pose::Identity();
   moved.translation() = Eigen::Vector3d(1, 2, 3);
-  EXPECT_EQ(store.update(1, wall.frame(), moved), UpdateResult::taken);
+  EXPECT_EQ(store.update(1, wall.frame(), moved).result, UpdateResult::taken);
   EXPECT_EQ(store.snapshot().view(1).T_world_camera().translation(), moved.translation());
   Pose inexact = moved;
   inexact.linear() *= 1.0002;
-  EXPECT_EQ(store.update(1, wall.frame(), inexact), UpdateResult::taken);
+  EXPECT_EQ(store.update(1, wall.frame(), inexact).result, UpdateResult::taken);
   EXPECT_TRUE(store.snapshot().view(1).T_world_camera().linear().isIdentity(1e-12)) << "repaired";
   const auto refused = [&](const char* why, const auto& change) {
-    ASSERT_EQ(store.update(1, wall.frame(), moved), UpdateResult::taken);
+    ASSERT_EQ(store.update(1, wall.frame(), moved).result, UpdateResult::taken);
     Pose broken = moved;
     change(broken);
-    EXPECT_EQ(store.update(1, wall.frame(), broken), UpdateResult::unusable) << why;
+    EXPECT_EQ(store.update(1, wall.frame(), broken).result, UpdateResult::unusable) << why;
     EXPECT_EQ(free_m(store.snapshot(), 1), 0.0F) << why;
     EXPECT_EQ(store.snapshot().T_world_camera(1).translation(), moved.translation()) << "stays where it was: " << why;
   };
@@ -215,7 +215,7 @@ TEST(ViewStore, ACameraWithoutATimeFreesNothingThatMayMove) {
   for (const double time_s : {kNaN, kInf, -kInf}) {
     ViewStore store(rig_of(2), settings_for(2));
     (void)store.update(0, Wall(1.0F, 5.0).frame());
-    EXPECT_EQ(store.update(1, Wall(1.0F, time_s).frame()), UpdateResult::taken);
+    EXPECT_EQ(store.update(1, Wall(1.0F, time_s).frame()).result, UpdateResult::taken);
     const Snapshot snapshot = store.snapshot();
     EXPECT_EQ(snapshot.reference_time_s(), 5.0);
     EXPECT_TRUE(snapshot.stale());

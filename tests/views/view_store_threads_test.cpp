@@ -134,7 +134,7 @@ TEST(ViewStoreThreads, SnapshotsAreWholeWhileImagesArrive) {
       const test::AllocationGuard guard;
       // Goes on until the readers have had their share of the processor, too.
       for (int n = 1; n <= images || (taken < images / 10 && n < 1'000'000); ++n) {
-        dropped += store.update(k, frame.set(n), NumberedFrame::pose(n)) == UpdateResult::dropped ? 1 : 0;
+        dropped += store.update(k, frame.set(n), NumberedFrame::pose(n)).result == UpdateResult::dropped ? 1 : 0;
         last[k] = n;
       }
       allocations[k] = guard.allocations();

@@ -2,8 +2,9 @@
 
 #include <numbers>
 
-#include "depthgrid/avoidance/grid_distances.hpp"
 #include "depthgrid/avoidance/model_limits.hpp"
+#include "depthgrid/avoidance/nothing_near.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
 #include "depthgrid/views/surveillance_radius.hpp"
 
@@ -68,23 +69,24 @@ robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings) {
   return result;
 }
 
-std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig& rig, const AvoidanceSettings& settings,
-                                                       std::size_t parts) {
+std::unique_ptr<DistanceEvaluator> make_evaluator(Method method, const Rig& rig, const AvoidanceSettings& settings,
+                                                  const search::Budget& budget) {
   if (method == Method::none) {
-    return std::make_unique<avoidance::NoDistances>();
+    return std::make_unique<avoidance::NothingNear>();
   }
   if (is_search(method)) {
     const double pocket_m = method == Method::search_pockets ? settings.ignored_pocket_m : 0;
-    return std::make_unique<avoidance::SearchDistances>(rig, search_settings(rig, settings, pocket_m), parts);
+    return std::make_unique<search::SearchEvaluator>(rig, search_settings(rig, settings, pocket_m),
+                                                     search::EvaluatorOptions{.directions = 1, .budget = budget});
   }
   const simulation::Arrangement letter = simulation::letter_arrangement();
-  avoidance::GridDistancesSettings grid;
-  grid.cells = {letter.d_min_m, letter.cell_m, 0, letter.cells};
-  grid.evaluation.variant = grid::Variant::letter;
-  grid.evaluation.collect = grid::Collect::hybrid;
-  grid.evaluation.rho_m = settings.rho_m;
-  grid.robot_pixels = method == Method::letter_one ? avoidance::RobotPixels::removed : avoidance::RobotPixels::case_iv;
-  return std::make_unique<avoidance::GridDistances>(rig, grid);
+  grid::EvaluationSettings grid;
+  grid.variant = grid::Variant::letter;
+  grid.collect = grid::Collect::hybrid;
+  grid.rho_m = settings.rho_m;
+  grid.robot_pixels = method == Method::letter_one ? grid::RobotPixels::removed : grid::RobotPixels::case_iv;
+  return std::make_unique<grid::GridEvaluator>(
+      rig, 0, grid::DepthQuantisation{letter.d_min_m, letter.cell_m, 0, letter.cells}, grid);
 }
 
 avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,

@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "depthgrid/avoidance/avoidance_loop.hpp"
-#include "depthgrid/avoidance/search_distances.hpp"
 #include "depthgrid/control/polygon_task.hpp"
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/robot/robot_at_exposure.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "lab/experiments/loop/avoidance_motion.hpp"
 
 namespace depthgrid::experiments {
@@ -66,9 +66,11 @@ struct AvoidanceSettings {
 
 [[nodiscard]] robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings);
 
-[[nodiscard]] std::unique_ptr<avoidance::DistanceSource> make_source(Method method, const Rig& rig,
-                                                                     const AvoidanceSettings& settings,
-                                                                     std::size_t parts);
+/// The search names the direction of the first part. The letter's answers points only, so its loop asks about points.
+/// `budget`: the search's.
+[[nodiscard]] std::unique_ptr<DistanceEvaluator> make_evaluator(Method method, const Rig& rig,
+                                                                const AvoidanceSettings& settings,
+                                                                const search::Budget& budget = {});
 
 [[nodiscard]] avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& model,
                                                     const AvoidanceSettings& settings);

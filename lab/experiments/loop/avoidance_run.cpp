@@ -34,12 +34,12 @@ class Run {
         hexagon_(hexagon(model, motion.hexagon_radius_m)),
         task_(hexagon_),
         history_(model.joints().size(), 256, 0.02, 0.0),
-        source_(make_source(method, rig_, common_, loop_settings_.parts.size())),
-        loop_({model}, task_, *source_, loop_settings_),
+        evaluator_(make_evaluator(method, rig_, common_)),
+        loop_({model}, task_, *evaluator_, loop_settings_),
         arm_(loop_settings_.controller.limits, common_.period_s, start_rad()),
         port_(arm_, history_),
         cell_(model, motion),
-        images_(rig_, model, history_, cell_, *source_, common_, settings.seed, settings.on_frame),
+        images_(rig_, model, history_, cell_, *evaluator_, common_, settings.seed, settings.on_frame),
         contacts_(method, model, loop_, loop_settings_.parts, common_) {}
 
   RunResult result() {
@@ -105,12 +105,13 @@ class Run {
       contacts_.take(time_s, *person, result_.summary);
     }
     if (settings_.sample_every > 0 && k % settings_.sample_every == 0) {
-      const Eigen::Vector3d to_nearest = loop_.answers()[0].obstacle.direction_world.value_or(Eigen::Vector3d::Zero());
+      const Eigen::Vector3d to_nearest =
+          control::obstacle_of(loop_.answers()[0]).direction_world.value_or(Eigen::Vector3d::Zero());
       RunSample sample{time_s,   joints_of_cycle(loop_, common_.period_s), tip,
                        person_m, loop_.report().output.repulsion_m_s,      to_nearest,
                        {}};
-      for (const avoidance::PartAnswer& answer : loop_.answers()) {
-        sample.told_m.push_back(std::min(common_.rho_m, answer.obstacle.distance_m.value_or(0)));
+      for (const Answer& answer : loop_.answers()) {
+        sample.told_m.push_back(std::min(common_.rho_m, control::obstacle_of(answer).distance_m.value_or(0)));
       }
       result_.samples.push_back(std::move(sample));
     }
@@ -134,7 +135,7 @@ class Run {
   control::PolygonSettings hexagon_;
   control::PolygonTask task_;
   robot::JointHistory history_;
-  std::unique_ptr<avoidance::DistanceSource> source_;
+  std::unique_ptr<DistanceEvaluator> evaluator_;
   avoidance::AvoidanceLoop loop_;
   control::SimulatedArm arm_;
   avoidance::HistoryPort port_;

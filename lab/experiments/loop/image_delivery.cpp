@@ -7,11 +7,11 @@
 namespace depthgrid::experiments {
 
 ImageDelivery::ImageDelivery(const Rig& rig, const robot::RobotModel& model, const robot::JointHistory& history,
-                             AvoidanceCell& cell, avoidance::DistanceSource& source, const AvoidanceSettings& settings,
+                             AvoidanceCell& cell, DistanceEvaluator& evaluator, const AvoidanceSettings& settings,
                              std::uint64_t seed, OnFrame on_frame)
     : rig_(rig),
       cell_(cell),
-      source_(source),
+      evaluator_(evaluator),
       settings_(settings),
       on_frame_(std::move(on_frame)),
       intake_(rig, {model}, history, exposure_settings(settings)),
@@ -40,8 +40,8 @@ void ImageDelivery::deliver(double time_s) {
     for (const DepthImage& image : exposure.measured_m) {
       seen.push_back({depth_view(image), {}, exposure.time_s});
     }
-    if (!source_.take(intake_.frames(seen))) {
-      fail("simulated run: the images of ", exposure.time_s, " s are not taken");
+    if (const FrameUpdate update = update_all(evaluator_, intake_.frames(seen)); !update.taken()) {
+      fail("simulated run: the images of ", exposure.time_s, " s are not taken: ", update.reason);
     }
     on_the_way_.pop_front();
   }

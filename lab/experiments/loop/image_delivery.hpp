@@ -21,14 +21,13 @@ class ImageDelivery {
  public:
   /// Everything but `on_frame` must outlive it. Throws Error as FrameIntake does.
   ImageDelivery(const Rig& rig, const robot::RobotModel& model, const robot::JointHistory& history, AvoidanceCell& cell,
-                avoidance::DistanceSource& source, const AvoidanceSettings& settings, std::uint64_t seed,
-                OnFrame on_frame);
+                DistanceEvaluator& evaluator, const AvoidanceSettings& settings, std::uint64_t seed, OnFrame on_frame);
 
   /// All cameras take an image of the cell as it is now.
   void expose(double time_s);
 
-  /// Hands the source what was exposed settings.frame_latency_s ago or earlier. Throws Error when it does not take it:
-  /// what follows would be measured as if it were the method's.
+  /// Hands the evaluator what was exposed settings.frame_latency_s ago or earlier. Throws Error when it does not take
+  /// it: what follows would be measured as if it were the method's.
   void deliver(double time_s);
 
  private:
@@ -39,7 +38,7 @@ class ImageDelivery {
 
   const Rig& rig_;
   AvoidanceCell& cell_;
-  avoidance::DistanceSource& source_;
+  DistanceEvaluator& evaluator_;
   const AvoidanceSettings& settings_;
   OnFrame on_frame_;
   robot::FrameIntake intake_;

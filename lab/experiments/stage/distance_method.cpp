@@ -1,11 +1,10 @@
 #include "lab/experiments/stage/distance_method.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/grid/evaluation.hpp"
-#include "depthgrid/search/search.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 
 namespace depthgrid::experiments {
 
@@ -22,18 +21,6 @@ std::string_view to_string(EvaluationMethod method) noexcept {
   }
   return "";
 }
-
-class DistanceMethod::Evaluator {
- public:
-  Evaluator() = default;
-  virtual ~Evaluator() = default;
-  Evaluator(const Evaluator&) = delete;
-  Evaluator& operator=(const Evaluator&) = delete;
-  Evaluator(Evaluator&&) = delete;
-  Evaluator& operator=(Evaluator&&) = delete;
-  [[nodiscard]] virtual bool update(std::span<const Frame> frames) = 0;
-  virtual void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers) = 0;
-};
 
 namespace {
 
@@ -75,72 +62,17 @@ views::Settings search_settings(const Rig& rig, const simulation::Arrangement& a
 
 }  // namespace
 
-class DistanceMethod::GridMethod final : public Evaluator {
- public:
-  GridMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement)
-      : evaluator_(rig, 0, cells(arrangement), grid_settings(method, rig)) {}
-
-  bool update(std::span<const Frame> frames) override { return evaluator_.update(frames); }
-
-  void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers) override {
-    found_.resize(points_world.size());
-    evaluator_.evaluate(points_world, found_);
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      answers[i] = found_[i].nearest;
-    }
-  }
-
- private:
-  grid::GridEvaluator evaluator_;
-  std::vector<grid::Evaluation> found_;
-};
-
-class DistanceMethod::SearchMethod final : public Evaluator {
- public:
-  SearchMethod(const Rig& rig, const simulation::Arrangement& arrangement)
-      : store_(rig, search_settings(rig, arrangement)) {}
-
-  bool update(std::span<const Frame> frames) override {
-    bool complete = true;
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      complete = store_.update(k, frames[k]) == views::UpdateResult::taken && complete;
-    }
-    return complete;
-  }
-
-  void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers) override {
-    primitives_.clear();
-    for (const Eigen::Vector3d& p_world : points_world) {
-      primitives_.push_back(Capsule::point(p_world));
-    }
-    found_.resize(primitives_.size());
-    search_.distances(store_.snapshot(), primitives_, found_);
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      answers[i] = found_[i].nearest;
-    }
-  }
-
- private:
-  views::ViewStore store_;
-  search::Search search_;
-  std::vector<Capsule> primitives_;
-  std::vector<search::Answer> found_;
-};
-
 DistanceMethod::DistanceMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement) {
   if (method == EvaluationMethod::search) {
-    evaluator_ = std::make_unique<SearchMethod>(rig, arrangement);
+    evaluator_ = std::make_unique<search::SearchEvaluator>(rig, search_settings(rig, arrangement));
   } else {
-    evaluator_ = std::make_unique<GridMethod>(method, rig, arrangement);
+    evaluator_ = std::make_unique<grid::GridEvaluator>(rig, 0, cells(arrangement), grid_settings(method, rig));
   }
 }
-DistanceMethod::~DistanceMethod() = default;
-DistanceMethod::DistanceMethod(DistanceMethod&&) noexcept = default;
-DistanceMethod& DistanceMethod::operator=(DistanceMethod&&) noexcept = default;
 
 void DistanceMethod::update(std::span<const Frame> frames) {
-  if (!evaluator_->update(frames)) {
-    fail("a simulated frame was not taken");
+  if (const FrameUpdate update = update_all(*evaluator_, frames); !update.taken()) {
+    fail("a simulated frame was not taken: ", update.reason);
   }
 }
 
@@ -148,7 +80,11 @@ void DistanceMethod::evaluate(std::span<const Eigen::Vector3d> points_world, std
   if (answers.size() != points_world.size()) {
     fail("distances of ", points_world.size(), " points into ", answers.size(), " answers");
   }
-  evaluator_->evaluate(points_world, answers);
+  points_.resize(points_world.size());
+  found_.resize(points_world.size());
+  std::transform(points_world.begin(), points_world.end(), points_.begin(), Capsule::point);
+  evaluator_->evaluate(points_, 0, found_);  // the images are of one instant
+  std::transform(found_.begin(), found_.end(), answers.begin(), [](const Answer& answer) { return answer.nearest; });
 }
 
 }  // namespace depthgrid::experiments

@@ -1,4 +1,4 @@
-// The ways to compute distances that the experiments compare, behind one interface.
+// The ways to compute distances that the experiments compare.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,9 +6,9 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
-#include "depthgrid/core/frame.hpp"
-#include "depthgrid/core/proximity.hpp"
+#include "depthgrid/core/distance_evaluator.hpp"
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
 
@@ -31,11 +31,6 @@ class DistanceMethod {
 
   /// `arrangement` says where the space begins and ends. Throws Error when rig or margins are invalid.
   DistanceMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement);
-  ~DistanceMethod();
-  DistanceMethod(DistanceMethod&&) noexcept;
-  DistanceMethod& operator=(DistanceMethod&&) noexcept;
-  DistanceMethod(const DistanceMethod&) = delete;
-  DistanceMethod& operator=(const DistanceMethod&) = delete;
 
   /// One frame a camera, in the rig's order. Throws Error when one is unusable.
   void update(std::span<const Frame> frames);
@@ -44,10 +39,9 @@ class DistanceMethod {
   void evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers);
 
  private:
-  class Evaluator;
-  class GridMethod;
-  class SearchMethod;
-  std::unique_ptr<Evaluator> evaluator_;
+  std::unique_ptr<DistanceEvaluator> evaluator_;
+  std::vector<Capsule> points_;
+  std::vector<Answer> found_;
 };
 
 }  // namespace depthgrid::experiments

@@ -29,23 +29,34 @@ Clock::duration ticks(double duration_s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(duration_s));
 }
 
-/// Passes everything on and notes how long the distances took.
-class TimedSource final : public avoidance::DistanceSource {
+/// Passes everything on, notes how long the distances took, and counts the answers that a budget ended.
+class TimedEvaluator final : public DistanceEvaluator {
  public:
-  explicit TimedSource(avoidance::DistanceSource& source) : source_(source) {}
-  [[nodiscard]] std::string_view name() const noexcept override { return source_.name(); }
-  bool take(std::span<const Frame> frames) noexcept override { return source_.take(frames); }
-  void evaluate(std::span<const Capsule> parts_world, double now_s,
-                std::span<avoidance::PartAnswer> answers) noexcept override {
+  explicit TimedEvaluator(DistanceEvaluator& evaluator) : evaluator_(evaluator) {}
+  [[nodiscard]] std::string_view name() const noexcept override { return evaluator_.name(); }
+  [[nodiscard]] std::size_t camera_count() const noexcept override { return evaluator_.camera_count(); }
+  FrameUpdate update(std::size_t camera, const Frame& frame) noexcept override {
+    return evaluator_.update(camera, frame);
+  }
+  FrameUpdate update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept override {
+    return evaluator_.update(camera, frame, T_world_camera);
+  }
+  void evaluate(std::span<const Capsule> capsules, double now_s, std::span<Answer> answers) noexcept override {
     const auto begin = Clock::now();
-    source_.evaluate(parts_world, now_s, answers);
+    evaluator_.evaluate(capsules, now_s, answers);
     evaluate_s_ = seconds(Clock::now() - begin);
+    answered_ += static_cast<std::int64_t>(answers.size());
+    stopped_ += std::count_if(answers.begin(), answers.end(), [](const Answer& a) { return a.nearest.budget; });
   }
   [[nodiscard]] double evaluate_s() const noexcept { return evaluate_s_; }
+  [[nodiscard]] std::int64_t answered() const noexcept { return answered_; }
+  [[nodiscard]] std::int64_t stopped_by_budget() const noexcept { return stopped_; }
 
  private:
-  avoidance::DistanceSource& source_;
+  DistanceEvaluator& evaluator_;
   double evaluate_s_ = 0;
+  std::int64_t answered_ = 0;
+  std::int64_t stopped_ = 0;
 };
 
 avoidance::LoopSettings settings_of(Method method, LoopParts parts, const robot::RobotModel& model,
@@ -80,7 +91,7 @@ class RealTimePriority {
   bool granted_ = false;
 };
 
-/// Robot, history, source and loop of one run.
+/// Robot, history, evaluator and loop of one run.
 struct Parts {
   Parts(const LoopRecording& recording, Method method, LoopParts which, const AvoidanceSettings& settings,
         const search::Budget& budget)
@@ -88,11 +99,8 @@ struct Parts {
         loop_settings(settings_of(method, which, model, settings)),
         history(model.joints().size(), 256, 0.02, 0.0),
         intake(recording.rig(), {model}, history, exposure_settings(settings)),
-        source(method == Method::search ? std::make_unique<avoidance::SearchDistances>(
-                                              recording.rig(), search_settings(recording.rig(), settings),
-                                              loop_settings.parts.size(), budget)
-                                        : make_source(method, recording.rig(), settings, loop_settings.parts.size())),
-        timed(*source),
+        evaluator(make_evaluator(method, recording.rig(), settings, budget)),
+        timed(*evaluator),
         task(hexagon(model)),
         loop({model}, task, timed, loop_settings),
         arm(recording),
@@ -107,7 +115,8 @@ struct Parts {
 
   /// The images of one exposure with the joint positions of then, before any cycle at that time. Throws Error.
   void take(const control::JointVector& q, const std::vector<Frame>& seen, double exposed_s) {
-    if (!history.add(exposed_s, {q.data(), static_cast<std::size_t>(q.size())}) || !timed.take(intake.frames(seen))) {
+    if (!history.add(exposed_s, {q.data(), static_cast<std::size_t>(q.size())}) ||
+        !update_all(timed, intake.frames(seen)).taken()) {
       fail("timing: the images of ", exposed_s, " s are not taken");
     }
   }
@@ -116,8 +125,8 @@ struct Parts {
   avoidance::LoopSettings loop_settings;
   robot::JointHistory history;
   robot::FrameIntake intake;
-  std::unique_ptr<avoidance::DistanceSource> source;
-  TimedSource timed;
+  std::unique_ptr<DistanceEvaluator> evaluator;
+  TimedEvaluator timed;
   control::PolygonTask task;
   avoidance::AvoidanceLoop loop;
   RecordedArm arm;
@@ -205,16 +214,15 @@ PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const Avoida
     taking.store(true, std::memory_order_relaxed);
     const auto start = Clock::now();
     const double exposed_s = static_cast<double>(k) * recording.period_s();
-    const bool taken = all.timed.take(all.intake.frames(recording.seen(*frame, exposed_s)));
+    const bool taken = update_all(all.timed, all.intake.frames(recording.seen(*frame, exposed_s))).taken();
     result.frame_s.push_back(seconds(Clock::now() - start));
     taking.store(false, std::memory_order_relaxed);
     result.failed_frames += taken ? 0 : 1;
     progress(exposed_s);
   }
   control.join();
-  const auto& source = dynamic_cast<const avoidance::SearchDistances&>(*all.source);
-  result.answered = source.answered();
-  result.stopped_by_budget = source.stopped_by_budget();
+  result.answered = all.timed.answered();
+  result.stopped_by_budget = all.timed.stopped_by_budget();
   return result;
 }
 

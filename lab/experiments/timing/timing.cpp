@@ -141,7 +141,7 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
       " others were woken more than 1 ms late, " + std::to_string(late.interrupted) +
       " others did not have the processor all the time, " + std::to_string(late.computed) +
       " computed for 2 ms or longer. The worst cycle: " + worst_cycle(run) + ". Budget of the distances: " +
-      report::fixed(1e3 * budget.time_s, 2) + " ms a cycle; it ended " + report::percent(stopped, 3) +
+      report::fixed(1e3 * *budget.time_s, 2) + " ms a cycle; it ended " + report::percent(stopped, 3) +
       " of the answers. A pair of images took " + report::fixed(1e3 * report::quantile(run.frame_s, 0.5), 2) +
       " ms (median) and " + report::fixed(1e3 * report::quantile(run.frame_s, 1), 2) +
       " ms (most) on the other thread, robot removal included. " +
@@ -162,7 +162,7 @@ void report_paced(const std::string& name, const PacedRun& run, const AvoidanceS
            {"failed_cycles", run.failed_cycles},
            {"failed_frame_pairs", run.failed_frames},
            {"worst_cycle", worst_cycle(run)},
-           {"budget_ms", 1e3 * budget.time_s},
+           {"budget_ms", 1e3 * *budget.time_s},
            {"answers_ended_by_budget", stopped},
            {"frame_pair_median_ms", 1e3 * report::quantile(run.frame_s, 0.5)},
            {"frame_pair_most_ms", 1e3 * report::quantile(run.frame_s, 1)},
@@ -214,7 +214,7 @@ void run_timing(const Options& options, ExperimentReport& report) {
   settings.resolution_m = 0.005;
   const double recorded_s = frames_or(options, 150, 45) / kFrameRate_hz;
   const double paced_s = options.quick ? 10 : 60;
-  const search::Budget budget{0, kBudgetShare * settings.period_s};
+  const search::Budget budget{.time_s = kBudgetShare * settings.period_s};
   const auto steps = static_cast<std::size_t>(2 * paced_s) + 3;
   options.progress(0, steps);
   const LoopRecording recording(settings, recorded_s, options.seed);

@@ -23,7 +23,7 @@ TEST(LoopOnTheClock, DoesEveryPeriodAndTakesEveryFrame) {
   ASSERT_EQ(free.cycle_s.size(), 120U);
   EXPECT_GT(*std::min_element(free.cycle_s.begin(), free.cycle_s.end()), 0);
   const PacedRun paced =
-      run_paced(recording, LoopParts::link_capsules, settings, 0.4, {.nodes = 0, .time_s = 0.001}, [](double) {});
+      run_paced(recording, LoopParts::link_capsules, settings, 0.4, {.time_s = 0.001}, [](double) {});
   EXPECT_EQ(paced.periods.size(), 200U);
   EXPECT_EQ(paced.frame_s.size(), 12U);
   EXPECT_EQ(paced.answered, 200 * 6);

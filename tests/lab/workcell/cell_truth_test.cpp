@@ -14,8 +14,11 @@ namespace {
 
 using simulation::BodyKind;
 using simulation::Box;
+using simulation::mesh_of;
+using simulation::nearest_point;
 using simulation::Plane;
 using simulation::Sphere;
+using simulation::transformed;
 using simulation::TriangleMesh;
 using simulation::Workcell;
 using simulation::WorkcellBody;

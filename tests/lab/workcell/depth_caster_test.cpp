@@ -14,6 +14,9 @@ namespace depthgrid::workcell::testing {
 namespace {
 
 using simulation::BodyKind;
+using simulation::contains;
+using simulation::mesh_of;
+using simulation::nearest_point;
 using simulation::TriangleMesh;
 using simulation::Workcell;
 using simulation::WorkcellBody;

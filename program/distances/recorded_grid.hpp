@@ -7,7 +7,6 @@
 
 #include "depthgrid/files/recording.hpp"
 #include "program/distances/evaluation_options.hpp"
-#include "program/distances/frame_evaluator.hpp"
 
 namespace depthgrid::program {
 
@@ -19,8 +18,9 @@ struct GridSource {
 
 /// `frame_indices`: the frames that will be evaluated; where neither the options nor the camera say how far the grid
 /// reaches they are read for the deepest reading. Throws Error.
-std::unique_ptr<FrameEvaluator> make_grid_evaluator(files::Recording& recording, const std::vector<int>& frame_indices,
-                                                    const EvaluationOptions& options, const GridSource& source,
-                                                    const grid::EvaluationSettings& settings);
+std::unique_ptr<DistanceEvaluator> make_grid_evaluator(files::Recording& recording,
+                                                       const std::vector<int>& frame_indices,
+                                                       const EvaluationOptions& options, const GridSource& source,
+                                                       const grid::EvaluationSettings& settings);
 
 }  // namespace depthgrid::program

@@ -1,49 +1,18 @@
-#include "program/distances/grid_frame_evaluator.hpp"
+#include "program/distances/recorded_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/files/png.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/grid/map/map_file.hpp"
 #include "report/progress_line.hpp"
 
 namespace depthgrid::program {
 
 namespace {
-
-class GridFrameEvaluator final : public FrameEvaluator {
- public:
-  GridFrameEvaluator(const Rig& rig, std::size_t principal, const grid::DepthQuantisation& cells,
-                     const grid::EvaluationSettings& settings, std::shared_ptr<const grid::DepthGridMap> map)
-      : evaluator_(rig, principal, cells, settings, std::move(map)),
-        hybrid_(settings.collect == grid::Collect::hybrid) {}
-
-  bool update(std::span<const Frame> frames) override { return evaluator_.update(frames); }
-
-  std::vector<PointAnswer> evaluate(std::span<const files::ControlPoint> points_world) override {
-    std::vector<PointAnswer> answers;
-    answers.reserve(points_world.size());
-    for (const files::ControlPoint& point : points_world) {
-      if (point.capsule.radius_m > 0 || point.has_end) {
-        fail("control point '", point.id, "' has a ", point.has_end ? "second end" : "radius",
-             ", which only --method search knows");
-      }
-      const grid::Evaluation answer = evaluator_.evaluate(point.capsule.a);
-      answers.push_back({answer.nearest, answer.hybrid_direction_world, answer.obstacle_points,
-                         Eigen::Vector3d::Constant(Proximity::kNaN)});
-    }
-    return answers;
-  }
-
-  [[nodiscard]] AnswerColumns columns() const override { return {hybrid_, hybrid_, false}; }
-
- private:
-  grid::GridEvaluator evaluator_;
-  bool hybrid_;
-};
 
 /// The deepest reading of the principal camera in the frames chosen: the grid then holds everything it sees.
 double deepest_reading_m(files::Recording& recording, std::size_t camera, const MeasurementRule& rule,
@@ -87,9 +56,10 @@ std::shared_ptr<const grid::DepthGridMap> load_map(const GridSource& source, con
 
 }  // namespace
 
-std::unique_ptr<FrameEvaluator> make_grid_evaluator(files::Recording& recording, const std::vector<int>& frame_indices,
-                                                    const EvaluationOptions& options, const GridSource& source,
-                                                    const grid::EvaluationSettings& settings) {
+std::unique_ptr<DistanceEvaluator> make_grid_evaluator(files::Recording& recording,
+                                                       const std::vector<int>& frame_indices,
+                                                       const EvaluationOptions& options, const GridSource& source,
+                                                       const grid::EvaluationSettings& settings) {
   const Rig& rig = recording.rig();
   grid::DepthQuantisation base;
   std::optional<double> reach_m;
@@ -101,7 +71,7 @@ std::unique_ptr<FrameEvaluator> make_grid_evaluator(files::Recording& recording,
         std::isfinite(rule.far_m) ? rule.far_m : deepest_reading_m(recording, source.principal, rule, frame_indices);
   }
   const grid::DepthQuantisation cells = depth_quantisation(options, base, reach_m);
-  return std::make_unique<GridFrameEvaluator>(rig, source.principal, cells, settings, load_map(source, rig, cells));
+  return std::make_unique<grid::GridEvaluator>(rig, source.principal, cells, settings, load_map(source, rig, cells));
 }
 
 }  // namespace depthgrid::program

@@ -1,0 +1,47 @@
+// The interface of everything that turns depth images into distances: images in, answers out.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "depthgrid/core/answer.hpp"
+#include "depthgrid/core/capsule.hpp"
+#include "depthgrid/core/frame.hpp"
+#include "depthgrid/core/frame_update.hpp"
+#include "depthgrid/core/pose.hpp"
+
+namespace depthgrid {
+
+/// One thread, unless the evaluator says more. Nothing but construction throws, locks or allocates.
+class DistanceEvaluator {
+ public:
+  DistanceEvaluator() = default;
+  virtual ~DistanceEvaluator() = default;
+
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  [[nodiscard]] virtual std::size_t camera_count() const noexcept = 0;
+
+  /// A camera's newest image; its buffers need not outlive the call. With `T_world_camera` the camera has moved,
+  /// without it stands where the rig says. `camera` beyond the rig is `unusable`.
+  [[nodiscard]] virtual FrameUpdate update(std::size_t camera, const Frame& frame) noexcept = 0;
+  [[nodiscard]] virtual FrameUpdate update(std::size_t camera, const Frame& frame,
+                                           const Pose& T_world_camera) noexcept = 0;
+
+  /// One answer a capsule (world frame), for the time `now_s` on the frames' clock. answers.size() should equal
+  /// capsules.size(): answers without a capsule are not_evaluated, as are those of capsules that the evaluator refuses
+  /// or that are not finite.
+  virtual void evaluate(std::span<const Capsule> capsules, double now_s, std::span<Answer> answers) noexcept = 0;
+
+ protected:
+  DistanceEvaluator(const DistanceEvaluator&) = default;
+  DistanceEvaluator(DistanceEvaluator&&) = default;
+  DistanceEvaluator& operator=(const DistanceEvaluator&) = default;
+  DistanceEvaluator& operator=(DistanceEvaluator&&) = default;
+};
+
+/// The newest frame of every camera, in the rig's order; a camera without one has seen nothing. When not all were taken
+/// it says what became of the first that was not.
+[[nodiscard]] FrameUpdate update_all(DistanceEvaluator& evaluator, std::span<const Frame> frames) noexcept;
+
+}  // namespace depthgrid

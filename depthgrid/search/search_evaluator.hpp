@@ -1,0 +1,56 @@
+// The sound search for one thread: images in, distances out.
+#pragma once
+
+#include <cstddef>
+
+#include "depthgrid/core/distance_evaluator.hpp"
+#include "depthgrid/search/search.hpp"
+#include "depthgrid/views/view_store.hpp"
+
+namespace depthgrid::search {
+
+/// How far in the future an exposure may seem to lie, on clocks that agree not quite: it then counts as just as old.
+inline constexpr double kClockTolerance_s = 0.005;
+
+struct EvaluatorOptions {
+  /// How many of the first capsules get hybrid_direction_world. Where there are others, the first have a quarter of the
+  /// budget and the others the rest.
+  std::size_t directions = 0;
+  Budget budget{};  ///< of one evaluate()
+};
+
+/// A ViewStore and a Search. update() may run in other threads meanwhile, as ViewStore says.
+///
+/// distance_now_m is lower by v_max times the age of the images, which counts from the newest exposure: what may have
+/// come nearer since. So the surveillance radius rho should exceed what a controller needs by v_max times the greatest
+/// age. It is NaN when the images have no time, there are none, or they are from more than kClockTolerance_s after the
+/// time asked for.
+class SearchEvaluator final : public DistanceEvaluator {
+ public:
+  /// Throws Error as ViewStore does.
+  SearchEvaluator(const Rig& rig, const views::Settings& settings, const EvaluatorOptions& options = {});
+
+  [[nodiscard]] std::string_view name() const noexcept override { return "search"; }
+  [[nodiscard]] std::size_t camera_count() const noexcept override { return store_.rig().cameras.size(); }
+  [[nodiscard]] FrameUpdate update(std::size_t camera, const Frame& frame) noexcept override;
+  [[nodiscard]] FrameUpdate update(std::size_t camera, const Frame& frame,
+                                   const Pose& T_world_camera) noexcept override;
+  void evaluate(std::span<const Capsule> capsules, double now_s, std::span<Answer> answers) noexcept override;
+
+  /// Of one capsule, at the time of the newest image, or later.
+  [[nodiscard]] Answer distance(const Capsule& capsule) noexcept;
+  [[nodiscard]] Answer distance(const Capsule& capsule, double now_s) noexcept;
+
+  /// What it has seen, for pictures and for other threads' own searches.
+  [[nodiscard]] const views::ViewStore& store() const noexcept { return store_; }
+
+ private:
+  void evaluate(const views::Snapshot& snapshot, std::span<const Capsule> capsules, double now_s,
+                std::span<Answer> answers) noexcept;
+
+  views::ViewStore store_;
+  Search search_;
+  EvaluatorOptions options_;
+};
+
+}  // namespace depthgrid::search

@@ -1,0 +1,181 @@
+// The grid as a distance evaluator: what it refuses, frames camera by camera, and the robot taken out of the image.
+#include "depthgrid/grid/grid_evaluator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace depthgrid::grid {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 48;
+constexpr DepthQuantisation kCells{0.2, 0.01, 0.0, 330};
+
+/// Looks along z from the origin, as do the others of its rig, 0.1 m beside each other.
+Rig rig_of(int cameras) {
+  Rig rig{.name = "rig", .cameras = {}, .T_floor_world = {}};
+  for (int k = 0; k < cameras; ++k) {
+    RigCamera& camera = rig.cameras.emplace_back();
+    camera.id = "camera " + std::to_string(k);
+    camera.intrinsics = {kWidth, kHeight, 52.5, 52.5, 32, 24};
+    camera.T_world_camera.translation().x() = 0.1 * k;
+  }
+  return rig;
+}
+
+EvaluationSettings letter(RobotPixels robot_pixels = RobotPixels::case_iv) {
+  EvaluationSettings settings;
+  settings.variant = Variant::letter;
+  settings.collect = Collect::hybrid;
+  settings.robot_pixels = robot_pixels;
+  return settings;
+}
+
+/// A wall, with a robot before it, 1.9 to 2.1 m deep, in the middle of the image.
+struct RobotBeforeWall {
+  std::vector<float> depth_m = std::vector<float>(kWidth * kHeight, 3.4F);
+  std::vector<float> near_m = std::vector<float>(kWidth * kHeight, 0.0F);
+  std::vector<float> far_m = std::vector<float>(kWidth * kHeight, 0.0F);
+  RobotBeforeWall() {
+    for (std::size_t v = 20; v < 28; ++v) {
+      for (std::size_t u = 28; u < 36; ++u) {
+        depth_m[v * kWidth + u] = 1.95F;
+        near_m[v * kWidth + u] = 1.9F;
+        far_m[v * kWidth + u] = 2.1F;
+      }
+    }
+  }
+  [[nodiscard]] Frame frame(double time_s = 0) const {
+    return {depth_view(depth_m, kWidth, kHeight), {near_m.data(), far_m.data(), 0}, time_s};
+  }
+};
+
+/// Where the robot is.
+const Capsule kInRobot = Capsule::point({0, 0, 2});
+
+TEST(GridEvaluator, OneCameraSeesAnObstacleBehindTheRobotOnlyInCaseFour) {
+  const RobotBeforeWall scene;
+  GridEvaluator case_iv(rig_of(1), 0, kCells, letter());
+  ASSERT_TRUE(case_iv.update(0, scene.frame()).taken());
+  EXPECT_NEAR(case_iv.distance(kInRobot).distance_now_m, 0.1, 0.03);
+  GridEvaluator removed(rig_of(1), 0, kCells, letter(RobotPixels::removed));
+  ASSERT_TRUE(removed.update(0, scene.frame()).taken());
+  EXPECT_EQ(removed.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
+  Frame without_stride = scene.frame();
+  without_stride.depth.stride_bytes = 0;
+  ASSERT_TRUE(removed.update(0, without_stride).taken());
+  EXPECT_EQ(removed.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
+}
+
+TEST(GridEvaluator, KnowsNothingToBeFreeWithoutAnImage) {
+  for (const RobotPixels robot : {RobotPixels::case_iv, RobotPixels::removed}) {
+    GridEvaluator evaluator(rig_of(1), 0, kCells, letter(robot));
+    EXPECT_EQ(evaluator.distance(kInRobot).distance_now_m, 0) << "before the first";
+    ASSERT_TRUE(evaluator.update(0, RobotBeforeWall().frame()).taken());
+    const FrameUpdate update = evaluator.update(0, Frame{});
+    EXPECT_EQ(update.result, UpdateResult::unusable);
+    EXPECT_THAT(update.reason, HasSubstr("no depth image"));
+    EXPECT_EQ(evaluator.distance(kInRobot).distance_now_m, 0);
+  }
+}
+
+TEST(GridEvaluator, AnswersPointsOnlyAndSaysWhy) {
+  const RobotBeforeWall scene;
+  GridEvaluator evaluator(rig_of(1), 0, kCells, letter());
+  ASSERT_TRUE(evaluator.update(0, scene.frame()).taken());
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Vector3d p(0.7, 0.3, 3.2);
+  const std::array<Capsule, 6> asked{Capsule::point(p),        Capsule::sphere(p, 0.01),     {p, {0.7, 0.4, 3.2}, 0},
+                                     Capsule::sphere(p, kNaN), Capsule::point({kNaN, 0, 1}), Capsule{p, p, 0}};
+  const std::array<const char*, 6> reasons{nullptr, "a radius", "a length", "a radius", "not finite", nullptr};
+  std::array<Answer, 7> answers;
+  answers.back().nearest.state = ProximityState::measured;
+  evaluator.evaluate(asked, 0, answers);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const char* reason = why_refused(asked[i]);
+    ASSERT_EQ(reason == nullptr, reasons[i] == nullptr) << i;
+    if (reason != nullptr) {
+      EXPECT_THAT(reason, HasSubstr(reasons[i])) << i;
+      EXPECT_EQ(answers[i].nearest.state, ProximityState::not_evaluated) << i;
+      EXPECT_FALSE(answers[i].distance_now_m >= 0) << i;
+    } else {
+      EXPECT_NEAR(answers[i].nearest.distance_m, 0.2, 0.02) << i;
+      EXPECT_EQ(answers[i].distance_now_m, std::min(answers[i].nearest.distance_m, answers[i].nearest.known_to_m)) << i;
+      EXPECT_EQ(answers[i].on_axis_world, p) << i;
+      EXPECT_GT(answers[i].obstacle_points, 0) << i;
+    }
+  }
+  EXPECT_EQ(answers.back().nearest.state, ProximityState::not_evaluated) << "no capsule";
+}
+
+TEST(GridEvaluator, DoesNotAskHowOldAnImageIs) {
+  GridEvaluator evaluator(rig_of(1), 0, kCells, letter());
+  ASSERT_TRUE(evaluator.update(0, RobotBeforeWall().frame()).taken());
+  const Capsule point = Capsule::point({0.7, 0.3, 3.2});
+  std::array<Answer, 1> now;
+  std::array<Answer, 1> later;
+  evaluator.evaluate({&point, 1}, 0, now);
+  evaluator.evaluate({&point, 1}, 100, later);
+  EXPECT_EQ(now[0].distance_now_m, later[0].distance_now_m);
+}
+
+// The same frames one by one, in any order, and all at once.
+TEST(GridEvaluator, TakesFramesCameraByCamera) {
+  const RobotBeforeWall scene;
+  const std::array<Frame, 3> frames{scene.frame(), scene.frame(), scene.frame()};
+  EvaluationSettings settings;
+  settings.sensor.lateral_px = 0;
+  settings.max_frame_age_s = 0.1;
+  GridEvaluator all(rig_of(3), 0, kCells, settings);
+  ASSERT_TRUE(update_all(all, frames).taken());
+  GridEvaluator each(rig_of(3), 0, kCells, settings);
+  for (const std::size_t k : {2, 0, 1}) {
+    ASSERT_TRUE(each.update(k, frames[k]).taken());
+  }
+  const auto same = [&](const char* when) {
+    for (const Vector3d& p : {Vector3d(0, 0, 2.05), Vector3d(0.1, 0, 3.1), Vector3d(-0.3, 0.2, 2.2)}) {
+      const Answer a = all.distance(Capsule::point(p));
+      const Answer b = each.distance(Capsule::point(p));
+      EXPECT_EQ(a.nearest.distance_m, b.nearest.distance_m) << when;
+      EXPECT_EQ(a.nearest.stale, b.nearest.stale) << when;
+    }
+  };
+  same("all");
+  EXPECT_FALSE(each.distance(kInRobot).nearest.stale);
+  // One camera goes on, the others' frames are then old.
+  ASSERT_TRUE(each.update(1, scene.frame(1)).taken());
+  EXPECT_TRUE(each.distance(kInRobot).nearest.stale);
+  ASSERT_TRUE(each.update(0, scene.frame(1)).taken());
+  ASSERT_TRUE(each.update(2, scene.frame(1)).taken());
+  EXPECT_FALSE(each.distance(kInRobot).nearest.stale);
+
+  // A camera without a frame has seen nothing, and the first reason is told.
+  const FrameUpdate missing = update_all(all, std::span(frames).first(1));
+  EXPECT_EQ(missing.result, UpdateResult::unusable);
+  EXPECT_THAT(missing.reason, HasSubstr("no depth image"));
+  (void)each.update(1, Frame{});
+  (void)each.update(2, Frame{});
+  same("one");
+}
+
+TEST(GridEvaluator, HasNoOtherCamerasAndTheyDoNotMove) {
+  const RobotBeforeWall scene;
+  const Rig rig = rig_of(2);
+  GridEvaluator evaluator(rig, 0, kCells, letter());
+  EXPECT_EQ(evaluator.camera_count(), 2U);
+  EXPECT_EQ(evaluator.update(2, scene.frame()).result, UpdateResult::unusable);
+  EXPECT_THAT(evaluator.update(2, scene.frame()).reason, HasSubstr("no such camera"));
+  EXPECT_FALSE(update_all(evaluator, std::array<Frame, 3>{scene.frame(), scene.frame(), scene.frame()}).taken());
+  EXPECT_TRUE(evaluator.update(1, scene.frame(), rig.cameras[1].T_world_camera).taken());
+  const FrameUpdate moved = evaluator.update(1, scene.frame(), rig.cameras[0].T_world_camera);
+  EXPECT_EQ(moved.result, UpdateResult::unusable);
+  EXPECT_THAT(moved.reason, HasSubstr("do not move"));
+}
+
+}  // namespace
+}  // namespace depthgrid::grid
