@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/core/file_target.hpp"
 
 namespace depthgrid {
 namespace {
@@ -25,6 +24,18 @@ std::string temporary_suffix() {
 }
 
 }  // namespace
+
+std::filesystem::path replaceable_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    fail(path.string(), ": exists and is not a regular file, will not be replaced");
+  }
+  if (std::filesystem::is_symlink(path, error) && std::filesystem::exists(status)) {
+    return std::filesystem::canonical(path, error);
+  }
+  return path;
+}
 
 FileReplacement::FileReplacement(const std::filesystem::path& file) : file_(replaceable_file(file)), temporary_(file_) {
   temporary_ += temporary_suffix();

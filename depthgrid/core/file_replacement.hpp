@@ -6,6 +6,10 @@
 
 namespace depthgrid {
 
+/// The file that writing to `path` replaces: the target of a symbolic link, else `path` itself. Throws Error when it
+/// exists and is not a regular file, since renaming over a device, pipe or folder would destroy it.
+std::filesystem::path replaceable_file(const std::filesystem::path& path);
+
 /// Writes to a temporary name in the same folder; commit() renames it, the destructor removes it if it never came to
 /// that. So that a full disk or an error half-way leaves what was there before.
 class FileReplacement {

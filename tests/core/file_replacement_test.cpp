@@ -1,5 +1,5 @@
 // What writing a file may replace.
-#include "depthgrid/core/file_target.hpp"
+#include "depthgrid/core/file_replacement.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
