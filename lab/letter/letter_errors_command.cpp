@@ -77,8 +77,8 @@ void measure_errors(const ErrorsOptions& options) {
 
 void add_letter_errors_command(CLI::App& letter) {
   const auto options = std::make_shared<ErrorsOptions>();
-  CLI::App* const command =
-      letter.add_subcommand("errors", "errors of the letter's distances against a proven interval, as a page");
+  CLI::App* const command = letter.add_subcommand(
+      "errors", "errors of the letter's distances against a proven interval, as a page: some minutes");
   command->add_option("--seed", options->seed, "first seed of all random cases")->capture_default_str();
   command->add_option("--scenes", options->scenes, "small scenes for each number of secondary cameras")
       ->check(CLI::Range(1, 10'000'000))

@@ -51,7 +51,8 @@ void measure_rates(const RateOptions& options) {
 void add_letter_rate_command(CLI::App& letter) {
   const auto options = std::make_shared<RateOptions>();
   CLI::App* const command = letter.add_subcommand(
-      "rate", "evaluations a second of the grid evaluators with nine control points on workload W, one core");
+      "rate",
+      "evaluations a second of the grid evaluators with nine control points on workload W, one core: some minutes");
   command->add_option("--frame-sets", options->sets, "frame sets rendered")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -99,9 +99,9 @@ void measure_all(const RemovalOptions& options) {
 
 void add_robot_removal_command(CLI::App& app) {
   const auto options = std::make_shared<RemovalOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "robot-removal",
-      "time of joint positions, kinematics, padding and the robot's interval in one 640x480 image, one core: a minute");
+  CLI::App* const command = app.add_subcommand("robot-removal",
+                                               "time of joint positions, kinematics, padding and the robot's interval "
+                                               "in one 640x480 image, one core: some seconds");
   command->add_option("--poses", options->poses, "random joint positions a row")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();

@@ -105,7 +105,7 @@ void measure_all() {
 }  // namespace
 
 void add_workcell_rate_command(CLI::App& workcell) {
-  workcell.add_subcommand("rate", "depth images, sensors and true distances a second, one core: a minute")
+  workcell.add_subcommand("rate", "depth images, sensors and true distances a second, one core: some seconds")
       ->callback([] { measure_all(); });
 }
 

@@ -141,7 +141,7 @@ void write_table() {
 }  // namespace
 
 void add_worst_cases_command(CLI::App& app) {
-  app.add_subcommand("worst-cases", "the search where it is slowest, the table of docs/worst-cases.md: some minutes")
+  app.add_subcommand("worst-cases", "the search where it is slowest, the table of docs/worst-cases.md: some seconds")
       ->callback([] { write_table(); });
 }
 
