@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/robot/robot_removal.hpp"
 #include "depthgrid/views/view.hpp"
 
@@ -48,7 +48,7 @@ struct Consumers {
     EXPECT_EQ(why_unusable(frame, rig.cameras[0]) == nullptr, usable) << what;
     EXPECT_EQ(view.why_unusable(frame) == nullptr, usable) << what;
     EXPECT_EQ(view.update(frame, Pose::Identity()), usable) << what;
-    EXPECT_EQ(evaluator.update({&frame, 1}), usable) << what;
+    EXPECT_EQ(evaluator.update(0, frame).taken(), usable) << what;
     const Pose T_world_link = Pose::Identity();
     const RobotView seen = removal.find({&T_world_link, 1}, Pose::Identity(), {}, &frame.depth);
     EXPECT_EQ(seen.near_m[seen.stride_px * (kHeight / 2) + kWidth / 2] > 1.5F, usable_image) << what;
