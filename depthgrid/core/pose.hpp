@@ -3,10 +3,16 @@
 
 #include <Eigen/Geometry>
 
-// Otherwise Eigen's objects would differ in layout between a program and the library: crashes instead of answers.
+// Otherwise Eigen's objects would differ in layout between a program and the library: crashes instead of answers. What
+// lies on the heap differs with -mavx all the same, so no installed header owns a matrix there without Eigen::DontAlign.
 static_assert(EIGEN_MAX_ALIGN_BYTES == 16,
               "depthgrid is built with EIGEN_MAX_ALIGN_BYTES=16: compile with -DEIGEN_MAX_ALIGN_BYTES=16 as well, or "
               "without -mavx and -march=native (CMake's target depthgrid::core sets it)");
+static_assert(alignof(Eigen::Isometry3d) == 16 && sizeof(Eigen::Isometry3d) == 128,
+              "depthgrid is built with Eigen's own alignment of fixed sizes: compile without EIGEN_DONT_ALIGN, "
+              "EIGEN_DONT_VECTORIZE and EIGEN_MAX_STATIC_ALIGN_BYTES");
+static_assert(!Eigen::Matrix4d::IsRowMajor,
+              "depthgrid is built with columns first: compile without EIGEN_DEFAULT_TO_ROW_MAJOR");
 
 namespace depthgrid {
 

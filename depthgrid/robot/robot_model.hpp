@@ -36,7 +36,7 @@ struct LinkJoint {
 
 /// Rows 0-2: velocity of the point, m/s; rows 3-5: angular velocity of the link, rad/s; world frame; one column a
 /// joint.
-using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::DontAlign>;
 
 /// Never changes after construction; const members may be called from many threads at once and allocate nothing. Copies
 /// share what they hold.
