@@ -13,7 +13,7 @@
 #include <cstdint>
 
 #include "depthgrid/search/boxes-inl.hpp"
-#include "depthgrid/search/expected_pixels.hpp"
+#include "depthgrid/search/pixel_bounds.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {
@@ -27,13 +27,13 @@ struct Footprint {
   int last = 0;           ///< pixels between the first and the last, at most
 };
 
-HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, Expected expected) {
+HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, PixelBounds pixels) {
   const Ints di;
   const auto largest =
       static_cast<std::uint32_t>(hn::GetLane(hn::MaxOfLanes(di, hn::Max(hn::Sub(u1, u0), hn::Sub(v1, v0)))));
-  // What the lanes need is never more than expected but for rounding; it must not decide, since instruction sets differ
-  // in how many lanes they see at once.
-  const std::uint32_t last = std::max(expected.widest_px, largest);
+  // What the lanes need is never more than these bounds but for rounding; it must not decide, since instruction sets
+  // differ in how many lanes they see at once.
+  const std::uint32_t last = std::max(pixels.widest_px, largest);
   // Up to three by three pixels are looked up one by one, so that not one too many counts; 6 2^l + 1 pixels lie in at
   // most eight texel columns of level l wherever they begin. The coarsest level has the whole image in eight.
   if (last <= 2) {
@@ -115,14 +115,14 @@ HWY_INLINE M island_texels(const LocalCamera& camera, M left, const Footprint& a
 }
 
 /// Lanes of `asked` that the camera frees: seen free, or robot. Their rectangles lie in the image.
-HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_low, V z_high, Expected expected) {
+HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_low, V z_high, PixelBounds pixels) {
   const Floats d;
   const Ints di;
   const I u0 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.u_low));
   const I u1 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.u_high));
   const I v0 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.v_low));
   const I v1 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.v_high));
-  const Footprint at = footprint(camera, u0, u1, v0, v1, expected);
+  const Footprint at = footprint(camera, u0, u1, v0, v1, pixels);
   M free = hn::And(asked, hn::Gt(z_low, hn::Set(d, camera.blind_m)));
   const float* HWY_RESTRICT values = at.level == 0 ? camera.free_m : camera.minima_m + camera.texels[at.level].offset;
   for (int j = 0; j < at.side && !hn::AllFalse(d, free); ++j) {
@@ -133,7 +133,7 @@ HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_l
     }
     free = hn::And(free, hn::Lt(z_high, free_m));
   }
-  if (!expected.islands) {
+  if (!pixels.islands) {
     return free;
   }
   const M left = hn::AndNot(free, asked);
@@ -147,7 +147,7 @@ HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_l
 }
 
 /// Lanes that the camera frees wholly.
-HWY_INLINE M freed_whole(const LocalCamera& camera, M asked, const Bounds& b, Expected expected) {
+HWY_INLINE M freed_whole(const LocalCamera& camera, M asked, const Bounds& b, PixelBounds pixels) {
   const Floats d;
   const V zero = hn::Zero(d);
   const M in_front = hn::Gt(b.z_low, hn::Set(d, 1e-6F));
@@ -155,12 +155,12 @@ HWY_INLINE M freed_whole(const LocalCamera& camera, M asked, const Bounds& b, Ex
   const M inside =
       hn::And(hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
               hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
-  return freed(camera, hn::And(asked, inside), r, b.z_low, b.z_high, expected);
+  return freed(camera, hn::And(asked, inside), r, b.z_low, b.z_high, pixels);
 }
 
 /// Lanes of which the camera frees the part in its view between the clip's depths; where there is no such part it is
 /// free.
-HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, Expected expected) {
+HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, PixelBounds pixels) {
   const Floats d;
   const V zero = hn::Zero(d);
   const V z_low = hn::Max(b.z_low, hn::Set(d, clip.low_m));
@@ -177,7 +177,7 @@ HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bo
   const V last_v = hn::Set(d, camera.height - 1);
   const Rectangle r{hn::Min(hn::Max(whole.u_low, zero), last_u), hn::Min(hn::Max(whole.u_high, zero), last_u),
                     hn::Min(hn::Max(whole.v_low, zero), last_v), hn::Min(hn::Max(whole.v_high, zero), last_v)};
-  return hn::Or(empty, freed(camera, hn::Not(empty), r, z_low, z_high, expected));
+  return hn::Or(empty, freed(camera, hn::Not(empty), r, z_low, z_high, pixels));
 }
 
 }  // namespace depthgrid::search::HWY_NAMESPACE

@@ -32,7 +32,7 @@ struct Texels {
 
 struct LocalCamera {
   static constexpr std::size_t kMostTexels = 16;
-  // Single precision: what the cube test reads. x_camera = rotation x_local + offset.
+  // Single precision: what the cube split reads. x_camera = rotation x_local + offset.
   std::array<float, 9> rotation{};  ///< row by row
   std::array<float, 9> absolute_rotation{};
   std::array<float, 3> offset_m{};

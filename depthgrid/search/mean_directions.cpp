@@ -1,9 +1,9 @@
-// The part of the descent that looks at all obstacles within rho, not only at the nearest.
+// The part of the octree search that looks at all obstacles within rho, not only at the nearest.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "depthgrid/search/descent.hpp"
+#include "depthgrid/search/octree_search.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -14,8 +14,8 @@ constexpr double kFineness = 1.0 / 6;
 }  // namespace
 
 /// Adds a cube to the means of the primitives for which it is fine enough to count as its centre does. Returns these.
-std::uint32_t Descent::add_piece(const Cube& cube, std::span<Eigen::Vector3d> means,
-                                 std::array<double, kGroup>& total) const noexcept {
+std::uint32_t OctreeSearch::add_piece(const Cube& cube, std::span<Eigen::Vector3d> means,
+                                      std::array<double, kGroup>& total) const noexcept {
   const auto half_m = static_cast<double>(half_side_m(cube.level));
   const double least_half_m = settings_.rho_m / 32;
   const Box box = box_of(cube);
@@ -40,8 +40,8 @@ std::uint32_t Descent::add_piece(const Cube& cube, std::span<Eigen::Vector3d> me
   return fine;
 }
 
-void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means,
-                                   Allowance& allowance) noexcept {
+void OctreeSearch::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means,
+                                        RemainingBudget& budget) noexcept {
   double largest_m = 0;
   std::array<double, kGroup> total{};
   for (std::size_t i = 0; i < axis_count_; ++i) {
@@ -56,8 +56,8 @@ void Descent::find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector
   }
   Cube cube{};
   Children children;
-  while (frontier_.pop(cube) && !allowance.is_spent()) {
-    allowance.take(1);
+  while (frontier_.pop(cube) && !budget.is_spent()) {
+    budget.take(1);
     ++count_.nodes;
     split(query_, &cube, 1, half_side_m(cube.level + 1), children);
     for (int n = 0; n < children.count; ++n) {

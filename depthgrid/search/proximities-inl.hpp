@@ -8,7 +8,7 @@
 #endif
 
 #include "depthgrid/search/boxes-inl.hpp"
-#include "depthgrid/search/cube_test.hpp"
+#include "depthgrid/search/cube_split.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::search::HWY_NAMESPACE {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "depthgrid/search/classification.hpp"
-#include "depthgrid/search/descent.hpp"
+#include "depthgrid/search/octree_search.hpp"
 #include "depthgrid/search/space.hpp"
 
 namespace depthgrid::search {
@@ -39,8 +39,8 @@ struct Search::State {
 
   void call(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
             const Budget& budget, Count* count, bool with_direction) noexcept;
-  void group(const views::Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers, Descent& descent,
-             Allowance& allowance, bool with_direction) noexcept;
+  void group(const views::Snapshot& snapshot, std::span<const Plan> plans, std::span<Answer> answers,
+             OctreeSearch& octree, RemainingBudget& remaining, bool with_direction) noexcept;
 
   CubeQuery query;
   Frontier frontier;
@@ -116,7 +116,7 @@ void Search::finish(const views::Snapshot& snapshot, const Plan& plan, const Nea
 }
 
 void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan> group_plans, std::span<Answer> answers,
-                          Descent& descent, Allowance& allowance, bool with_direction) noexcept {
+                          OctreeSearch& octree, RemainingBudget& remaining, bool with_direction) noexcept {
   const double rho_m = snapshot.settings().rho_m;
   Eigen::Vector3d low = group_plans.front().capsule.a;
   Eigen::Vector3d high = low;
@@ -126,22 +126,22 @@ void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan>
     high = high.cwiseMax(p.capsule.a).cwiseMax(p.capsule.b);
     reach_m = std::max(reach_m, rho_m + p.capsule.radius_m);
   }
-  descent.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + reach_m);
+  octree.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + reach_m);
   for (const Plan& p : group_plans) {
-    descent.add(p.capsule, p.limit_m);
+    octree.add(p.capsule, p.limit_m);
   }
-  descent.find(allowance);
+  octree.find(remaining);
   std::uint32_t wanted = 0;
   for (std::size_t i = 0; i < group_plans.size(); ++i) {
     Answer& result = answers[group_plans[i].answer];
-    finish(snapshot, group_plans[i], descent.nearest_of(i), descent.origin_world(), result);
+    finish(snapshot, group_plans[i], octree.nearest_of(i), octree.origin_world(), result);
     const Eigen::Vector3d& n = result.nearest.direction_world;
     wanted |= n.allFinite() && !n.isZero() ? 1U << i : 0U;
   }
   if (!with_direction || wanted == 0) {
     return;
   }
-  descent.find_mean_directions(wanted, means, allowance);
+  octree.find_mean_directions(wanted, means, remaining);
   for (std::size_t i = 0; i < group_plans.size(); ++i) {
     if (((wanted >> i) & 1U) != 0) {
       Answer& result = answers[group_plans[i].answer];
@@ -154,12 +154,12 @@ void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan>
 void Search::State::call(const views::Snapshot& snapshot, std::span<const Capsule> capsules, std::span<Answer> answers,
                          const Budget& budget, Count* count, bool with_direction) noexcept {
   Count own;
-  Descent descent(snapshot, query, frontier, count != nullptr ? *count : own);
+  OctreeSearch octree(snapshot, query, frontier, count != nullptr ? *count : own);
   std::int64_t nodes_left = std::max(std::int64_t{0}, budget.nodes.value_or(std::numeric_limits<std::int64_t>::max()));
-  Allowance allowance;
+  RemainingBudget remaining;
   if (budget.time_s) {
     const double time_s = *budget.time_s > 0 ? std::min(*budget.time_s, 1e6) : 0.0;
-    allowance.end_at(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+    remaining.end_at(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                                                             std::chrono::duration<double>(time_s)));
   }
   const std::size_t both = std::min(capsules.size(), answers.size());
@@ -189,9 +189,9 @@ void Search::State::call(const views::Snapshot& snapshot, std::span<const Capsul
     // What the groups before have left is shared evenly by the rest.
     const auto share = nodes_left / static_cast<std::int64_t>(both - first) * static_cast<std::int64_t>(next - first);
     const std::int64_t given = next == both ? nodes_left : share;
-    allowance.give(given);
-    group(snapshot, {plans.data(), size}, answers, descent, allowance, with_direction);
-    nodes_left -= given - allowance.nodes();
+    remaining.give(given);
+    group(snapshot, {plans.data(), size}, answers, octree, remaining, with_direction);
+    nodes_left -= given - remaining.nodes();
   }
   for (std::size_t i = both; i < answers.size(); ++i) {
     answers[i] = Answer{};

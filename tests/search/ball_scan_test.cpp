@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "depthgrid/core/pixel_frustum.hpp"
-#include "depthgrid/search/ball_test.hpp"
+#include "depthgrid/search/ball_query.hpp"
 #include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/view_store.hpp"
 #include "reference/random_problem.hpp"

@@ -1,11 +1,11 @@
-#include "depthgrid/search/descent.hpp"
+#include "depthgrid/search/octree_search.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "depthgrid/core/rounding.hpp"
-#include "depthgrid/search/ball_test.hpp"
+#include "depthgrid/search/ball_query.hpp"
 #include "depthgrid/search/blocking_point.hpp"
 
 namespace depthgrid::search {
@@ -21,7 +21,7 @@ constexpr double kLargestRate = 3.2;
 
 }  // namespace
 
-Descent::Descent(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
+OctreeSearch::OctreeSearch(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
     : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
   query_.camera_count = snapshot.camera_count();
   for (std::size_t k = 0; k < views::kMostCameras; ++k) {
@@ -43,7 +43,7 @@ Descent::Descent(const views::Snapshot& snapshot, CubeQuery& query, Frontier& fr
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
 }
 
-void Descent::set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept {
+void OctreeSearch::set_origin(const Eigen::Vector3d& origin_world, double extent_m) noexcept {
   origin_world_ = origin_world;
   extent_m_ = extent_m;
   for (std::size_t k = 0; k < query_.camera_count; ++k) {
@@ -51,7 +51,7 @@ void Descent::set_origin(const Eigen::Vector3d& origin_world, double extent_m) n
   }
 }
 
-void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept {
+void OctreeSearch::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept {
   // The root reaches at most four times the extent to one side.
   if (!((middle_world - origin_world_).cwiseAbs().maxCoeff() + 4 * extent_m <= extent_m_)) {
     set_origin(middle_world, kSharedExtent + 4 * extent_m);
@@ -104,7 +104,7 @@ void Descent::aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept
   }
 }
 
-Descent::Box Descent::box_of(const Cube& cube) const noexcept {
+OctreeSearch::Box OctreeSearch::box_of(const Cube& cube) const noexcept {
   const Eigen::Vector3d centre(static_cast<double>(cube.x), static_cast<double>(cube.y), static_cast<double>(cube.z));
   const auto half_m = Eigen::Vector3d::Constant(static_cast<double>(half_side_m(cube.level)));
   Box box{centre - half_m, centre + half_m};
@@ -115,7 +115,7 @@ Descent::Box Descent::box_of(const Cube& cube) const noexcept {
   return box;
 }
 
-bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
+bool OctreeSearch::in_space(const Eigen::Vector3d& x_local) const noexcept {
   if (query_.principal < 0) {
     return true;  // boxes are cut to W
   }
@@ -126,7 +126,7 @@ bool Descent::in_space(const Eigen::Vector3d& x_local) const noexcept {
 }
 
 /// Every camera has x in its not-free set, or nearly so along the ray, and x counts.
-bool Descent::is_blocked(const Eigen::Vector3d& x_local, double slack_m) const noexcept {
+bool OctreeSearch::is_blocked(const Eigen::Vector3d& x_local, double slack_m) const noexcept {
   bool covered = !query_.uncovered_ignored;
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
@@ -142,7 +142,7 @@ bool Descent::is_blocked(const Eigen::Vector3d& x_local, double slack_m) const n
 }
 
 /// Some camera frees the ball around the cube with all its reach; or all that is covered of the ball is free.
-bool Descent::is_free(const Cube& cube) noexcept {
+bool OctreeSearch::is_free(const Cube& cube) noexcept {
   const Box box = box_of(cube);
   const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
   const double half_diagonal_m = 0.5 * (box.high - box.low).norm() + 1e-7;
@@ -164,7 +164,7 @@ bool Descent::is_free(const Cube& cube) noexcept {
   return uncovered;
 }
 
-bool Descent::is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept {
+bool OctreeSearch::is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept {
   if (cube.level < leaf_level_) {
     return false;
   }
@@ -177,7 +177,7 @@ bool Descent::is_leaf(const Cube& cube, const LocalAxis& axis) const noexcept {
 
 /// The cube's distance from the axis, and the point at that distance towards the cube's centre. Nothing in the cube is
 /// nearer, so an answer may point there instead of to the cube's nearest corner, which is farther from what is in it.
-AxisToBox Descent::towards_centre(const Cube& cube, const LocalAxis& axis) const noexcept {
+AxisToBox OctreeSearch::towards_centre(const Cube& cube, const LocalAxis& axis) const noexcept {
   const Box box = box_of(cube);
   const double distance_m = nearest(axis.a, axis.b, box.low, box.high).distance_m;
   const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
@@ -188,7 +188,7 @@ AxisToBox Descent::towards_centre(const Cube& cube, const LocalAxis& axis) const
   return result;
 }
 
-std::size_t Descent::add(const Capsule& primitive, double limit_m) noexcept {
+std::size_t OctreeSearch::add(const Capsule& primitive, double limit_m) noexcept {
   const std::size_t i = axis_count_++;
   axes_[i] = {primitive.a - origin_world_, primitive.b - origin_world_, primitive.radius_m};
   found_[i] = Nearest{};
@@ -207,12 +207,12 @@ std::size_t Descent::add(const Capsule& primitive, double limit_m) noexcept {
 }
 
 /// Cubes have to be nearer than this, a little more because of single precision.
-void Descent::set_bound(std::size_t i, double bound_m) noexcept {
+void OctreeSearch::set_bound(std::size_t i, double bound_m) noexcept {
   constexpr double kRoundings = 8 * 0x1p-24;
   query_.axes[i].bound_m = bound_m > 0 ? float_above(bound_m + 1e-6 + kRoundings * extent_m_) : 0.0F;
 }
 
-bool Descent::is_of_interest(const Cube& cube) const noexcept {
+bool OctreeSearch::is_of_interest(const Cube& cube) const noexcept {
   for (std::uint32_t rest = cube.primitives; rest != 0; rest &= rest - 1) {
     if (cube.distance_m < query_.axes[static_cast<std::size_t>(std::countr_zero(rest))].bound_m) {
       return true;
@@ -221,12 +221,12 @@ bool Descent::is_of_interest(const Cube& cube) const noexcept {
   return false;
 }
 
-std::uint32_t Descent::all_primitives() const noexcept {
+std::uint32_t OctreeSearch::all_primitives() const noexcept {
   return axis_count_ >= kGroup ? ~0U : (1U << axis_count_) - 1U;
 }
 
 /// A place becomes the answer of a primitive if it is nearer than what was found before.
-void Descent::offer(const AxisToBox& pair, std::size_t i) noexcept {
+void OctreeSearch::offer(const AxisToBox& pair, std::size_t i) noexcept {
   Nearest& best = found_[i];
   if (pair.distance_m < best.distance_m) {
     best = {best.limit_m, pair.distance_m, true, false, pair.on_axis, pair.in_box};
@@ -235,7 +235,7 @@ void Descent::offer(const AxisToBox& pair, std::size_t i) noexcept {
 }
 
 /// What is not looked at bounds the answers.
-void Descent::stop(std::uint32_t primitives, double at_m) noexcept {
+void OctreeSearch::stop(std::uint32_t primitives, double at_m) noexcept {
   for (std::uint32_t rest = primitives; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));
     Nearest& best = found_[i];
@@ -247,13 +247,13 @@ void Descent::stop(std::uint32_t primitives, double at_m) noexcept {
 }
 
 /// Opens what split() has left over, or makes it the answer.
-void Descent::take(Children& children) noexcept {
+void OctreeSearch::take(Children& children) noexcept {
   for (int n = 0; n < children.count; ++n) {
     Cube& child = children.cubes[static_cast<std::size_t>(n)];
     if (!is_of_interest(child)) {
       continue;
     }
-    for (std::uint32_t rest = children.touching[static_cast<std::size_t>(n)]; rest != 0; rest &= rest - 1) {
+    for (std::uint32_t rest = children.tight_witness[static_cast<std::size_t>(n)]; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       const AxisToBox pair = towards_centre(child, axes_[i]);
       if (is_blocked(pair.in_box, settings_.resolution_m - 1e-5)) {
@@ -280,7 +280,7 @@ void Descent::take(Children& children) noexcept {
   }
 }
 
-void Descent::find(Allowance& allowance) noexcept {
+void OctreeSearch::find(RemainingBudget& budget) noexcept {
   double largest_m = 0;
   for (std::size_t i = 0; i < axis_count_; ++i) {
     largest_m = std::max(largest_m, found_[i].limit_m);
@@ -299,12 +299,12 @@ void Descent::find(Allowance& allowance) noexcept {
     if (!is_of_interest(cube)) {
       continue;
     }
-    if (allowance.is_spent()) {
+    if (budget.is_spent()) {
       stop(all_primitives(), std::max(0.0, static_cast<double>(frontier_.lower_bound_m()) - 1e-6));
       return;
     }
-    const int count = allowance.nodes() > 1 && frontier_.pop_like(cube.level, pair[1]) ? 2 : 1;
-    allowance.take(count);
+    const int count = budget.nodes() > 1 && frontier_.pop_like(cube.level, pair[1]) ? 2 : 1;
+    budget.take(count);
     count_.nodes += count;
     split(query_, pair.data(), count, half_side_m(cube.level + 1), children);
     take(children);

@@ -1,4 +1,4 @@
-#include "depthgrid/search/cube_test.hpp"
+#include "depthgrid/search/cube_split.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "depthgrid/search/cube_test.cpp"
+#define HWY_TARGET_INCLUDE "depthgrid/search/cube_split.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target: they must be seen once for each target.
 #include "depthgrid/search/freed-inl.hpp"
@@ -52,8 +52,8 @@ HWY_INLINE M not_freed(CubeQuery& query, std::span<const Cube> parents, float ha
     const std::uint8_t k = query.order[n];
     const LocalCamera& camera = query.cameras[k];
     const Bounds bounds = bounds_in(camera, boxes);
-    const Expected expected = expect(camera, parents, half_m);
-    M gone = freed_whole(camera, open, bounds, expected);
+    const PixelBounds pixels = pixel_bounds(camera, parents, half_m);
+    M gone = freed_whole(camera, open, bounds, pixels);
     // W and what a camera covers have nothing to do with its reach.
     const bool plain = query.principal == static_cast<int>(k) || query.uncovered_ignored;
     const Bounds own = plain && camera.has_reach ? bounds_in(camera, boxes, false) : bounds;
@@ -61,10 +61,10 @@ HWY_INLINE M not_freed(CubeQuery& query, std::span<const Cube> parents, float ha
       gone = hn::Or(gone, outside_view(query, camera, own));
     }
     if (camera.space.to_view) {
-      gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds, expected));
+      gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds, pixels));
     }
     if (query.uncovered_ignored) {
-      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, own, expected));
+      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, own, pixels));
     }
     open = hn::AndNot(gone, open);
     if (hn::AllFalse(d, open)) {
@@ -98,7 +98,8 @@ HWY_INLINE M cut_to_space(const CubeQuery& query, Boxes& boxes) {
 }
 
 /// Lanes of `open` whose point nearest to the axis seems to lie at or near not-free space in every camera.
-HWY_INLINE std::uint32_t touching(const CubeQuery& query, const Axis& axis, const Boxes& boxes, std::uint32_t lanes) {
+HWY_INLINE std::uint32_t tight_witness(const CubeQuery& query, const Axis& axis, const Boxes& boxes,
+                                       std::uint32_t lanes) {
   const Proximities near = proximities(axis, boxes);
   for (std::size_t n = 0; n < query.camera_count && lanes != 0; ++n) {
     const LocalCamera& camera = query.cameras[query.order[n]];
@@ -169,7 +170,7 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
     for (std::uint32_t rest = open_bits; rest != 0; rest &= rest - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
       child_of[lane] = children.count;
-      children.touching[static_cast<std::size_t>(children.count)] = 0;
+      children.tight_witness[static_cast<std::size_t>(children.count)] = 0;
       const std::size_t at = first + lane;
       children.cubes[static_cast<std::size_t>(children.count++)] = {xs[at], ys[at], zs[at], 1e30F, parents[0].level + 1,
                                                                     0};
@@ -191,8 +192,8 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
       if (!hints) {
         continue;
       }
-      for (std::uint32_t lanes = touching(query, query.axes[i], boxes, mine); lanes != 0; lanes &= lanes - 1) {
-        children.touching[static_cast<std::size_t>(child_of[static_cast<std::size_t>(std::countr_zero(lanes))])] |=
+      for (std::uint32_t lanes = tight_witness(query, query.axes[i], boxes, mine); lanes != 0; lanes &= lanes - 1) {
+        children.tight_witness[static_cast<std::size_t>(child_of[static_cast<std::size_t>(std::countr_zero(lanes))])] |=
             1U << i;
       }
     }

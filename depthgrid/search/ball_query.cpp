@@ -1,4 +1,4 @@
-#include "depthgrid/search/ball_test.hpp"
+#include "depthgrid/search/ball_query.hpp"
 
 #include <algorithm>
 #include <array>

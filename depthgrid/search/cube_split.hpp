@@ -49,7 +49,7 @@ struct Children {
   /// Of each child, bit i: every camera seems to have not-free space within slack and reach of the point that lies at
   /// the child's distance from axis i, towards its centre. A hint: in single precision, roughly for segments, and the
   /// robot's islands are not looked at.
-  std::array<std::uint32_t, kSplit> touching{};
+  std::array<std::uint32_t, kSplit> tight_witness{};
 };
 
 /// Splits one or two parents of the same level, whose children have this half side, and keeps the children that lie

@@ -7,7 +7,7 @@
 namespace depthgrid::search {
 
 /// What is left of a call's budget.
-class Allowance {
+class RemainingBudget {
  public:
   /// Cubes that may still be opened, of those given last.
   [[nodiscard]] std::int64_t nodes() const noexcept { return nodes_; }

@@ -1,4 +1,4 @@
-#include "depthgrid/search/allowance.hpp"
+#include "depthgrid/search/remaining_budget.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -8,12 +8,12 @@ constexpr int kClockInterval = 64;
 
 }  // namespace
 
-void Allowance::end_at(std::chrono::steady_clock::time_point deadline) noexcept {
+void RemainingBudget::end_at(std::chrono::steady_clock::time_point deadline) noexcept {
   deadline_ = deadline;
   timed_ = true;
 }
 
-bool Allowance::is_spent() noexcept {
+bool RemainingBudget::is_spent() noexcept {
   if (timed_ && !late_ && --until_clock_ <= 0) {
     until_clock_ = kClockInterval;
     late_ = std::chrono::steady_clock::now() >= deadline_;

@@ -1,4 +1,4 @@
-#include "depthgrid/search/expected_pixels.hpp"
+#include "depthgrid/search/pixel_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ bool may_have_islands(const LocalCamera& camera, float u_low, float u_high, floa
   return false;
 }
 
-Expected expect_of(const LocalCamera& camera, const Cube& parent, float half_m) noexcept {
+PixelBounds pixel_bounds_of(const LocalCamera& camera, const Cube& parent, float half_m) noexcept {
   const auto& r = camera.rotation;
   const auto& a = camera.absolute_rotation;
   const float x = r[0] * parent.x + r[1] * parent.y + r[2] * parent.z + camera.offset_m[0];
@@ -48,7 +48,7 @@ Expected expect_of(const LocalCamera& camera, const Cube& parent, float half_m) 
   const float wide = 2 * fx * (spread_x + grown + (std::abs(x) + 2 * spread_x + grown) / z_low * half_z);
   const float high = 2 * fy * (spread_y + grown + (std::abs(y) + 2 * spread_y + grown) / z_low * half_z);
   const float side = std::min(std::max(wide, high) * 1.0001F + 4 * camera.guard_px, 1e5F);
-  Expected result{static_cast<std::uint32_t>(side) + 1, false};
+  PixelBounds result{static_cast<std::uint32_t>(side) + 1, false};
   if (camera.has_islands) {
     // |X / Z - x / z| <= (|X - x| + |x| / z |Z - z|) / Z.
     const float parent_z = 2 * spread_z + grown;
@@ -63,10 +63,10 @@ Expected expect_of(const LocalCamera& camera, const Cube& parent, float half_m) 
 
 }  // namespace
 
-Expected expect(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept {
-  Expected all;
+PixelBounds pixel_bounds(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept {
+  PixelBounds all;
   for (const Cube& parent : parents) {
-    const Expected one = expect_of(camera, parent, half_m);
+    const PixelBounds one = pixel_bounds_of(camera, parent, half_m);
     all = {std::max(all.widest_px, one.widest_px), all.islands || one.islands};
   }
   return all;

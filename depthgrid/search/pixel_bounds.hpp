@@ -9,7 +9,7 @@
 
 namespace depthgrid::search {
 
-struct Expected {
+struct PixelBounds {
   /// Pixels between the first and the last that any child projects to, at most.
   std::uint32_t widest_px = 0;
   bool islands = false;  ///< whether there may be some of the robot's islands among them
@@ -17,6 +17,6 @@ struct Expected {
 
 /// Of all children of these cubes, half_m half a side. In scalar arithmetic from the parents alone, because what it
 /// decides must not depend on how many children an instruction set looks at at once.
-[[nodiscard]] Expected expect(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept;
+[[nodiscard]] PixelBounds pixel_bounds(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept;
 
 }  // namespace depthgrid::search

@@ -7,27 +7,27 @@
 #include <span>
 
 #include "depthgrid/core/capsule.hpp"
-#include "depthgrid/search/allowance.hpp"
 #include "depthgrid/search/axis_distance.hpp"
-#include "depthgrid/search/cube_test.hpp"
+#include "depthgrid/search/cube_split.hpp"
+#include "depthgrid/search/remaining_budget.hpp"
 #include "depthgrid/search/search.hpp"
 
 namespace depthgrid::search {
 
-/// One primitive's search. Positions relative to the descent's origin, metres.
+/// One primitive's search. Positions relative to the search's origin, metres.
 struct Nearest {
   double limit_m = 0;     ///< how far from the axis an obstacle is of interest
   double distance_m = 0;  ///< from the axis; limit_m when nothing nearer was found; a lower bound where `stopped`
   bool found = false;
-  bool stopped = false;  ///< by the allowance, or because the frontier was full
+  bool stopped = false;  ///< by the budget, or because the frontier was full
   Eigen::Vector3d on_axis = Eigen::Vector3d::Zero();
   Eigen::Vector3d in_obstacle = Eigen::Vector3d::Zero();
 };
 
 /// The search on one snapshot, for groups of primitives that are near to each other: their cubes are tested once.
-class Descent {
+class OctreeSearch {
  public:
-  Descent(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept;
+  OctreeSearch(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept;
 
   /// Starts a group around a place; extent_m: how far from it the axes and what is of interest around them reach.
   void aim(const Eigen::Vector3d& middle_world, double extent_m) noexcept;
@@ -36,14 +36,14 @@ class Descent {
   std::size_t add(const Capsule& primitive, double limit_m) noexcept;
 
   /// Finds the nearest obstacles of all primitives of the group. One within a primitive's radius ends its search.
-  void find(Allowance& allowance) noexcept;
+  void find(RemainingBudget& budget) noexcept;
   [[nodiscard]] const Nearest& nearest_of(std::size_t i) const noexcept { return found_[i]; }
 
   /// Mean of the unit vectors from the axis to all obstacle space within rho of the primitive's surface, weighted by
   /// volume and by the repulsion v(D). Cubes are split until their side is about
   /// a third of their distance or 1/16 of rho, and count as their centre does. For all primitives of the group for
   /// which `wanted` has its bit; zero where there is no such space.
-  void find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means, Allowance& allowance) noexcept;
+  void find_mean_directions(std::uint32_t wanted, std::span<Eigen::Vector3d> means, RemainingBudget& budget) noexcept;
 
   [[nodiscard]] const Eigen::Vector3d& origin_world() const noexcept { return origin_world_; }
 
