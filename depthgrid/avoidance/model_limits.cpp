@@ -10,8 +10,8 @@ namespace depthgrid::avoidance {
 control::JointLimits joint_limits(const robot::RobotModel& model, double acceleration_rad_s2) {
   constexpr double kNoEnd_rad = 1000;
   const std::size_t joints = model.joints().size();
-  if (joints < 1 || joints > control::kMostJoints) {
-    fail(model.source(), ": ", joints, " joints, the controller takes 1 to ", control::kMostJoints,
+  if (joints < 1 || joints > control::kMaxJoints) {
+    fail(model.source(), ": ", joints, " joints, the controller takes 1 to ", control::kMaxJoints,
          "; make those that it shall not move fixed in the file");
   }
   const auto count = static_cast<Eigen::Index>(joints);

@@ -14,7 +14,7 @@ constexpr double kRankLost = 1e-6;
 /// A velocity that leaves the box by less counts as inside.
 constexpr double kHeld = 1e-11;
 
-using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostJoints, kMostJoints>;
+using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxJoints, kMaxJoints>;
 
 /// The shortest change of the joints that are not saturated: change = fixed + s moved.
 struct Line {
@@ -121,7 +121,7 @@ class Loop {
   const JointBox& box_;
   JointRows all_rows_;
   JointVector held_;  ///< change of the saturated joints
-  std::array<bool, kMostJoints> saturated_{};
+  std::array<bool, kMaxJoints> saturated_{};
 };
 
 }  // namespace

@@ -4,7 +4,7 @@ namespace depthgrid::control {
 
 Obstacle ContactMemory::completed(const Obstacle& obstacle, std::size_t point, double period_s,
                                   double longest_s) noexcept {
-  if (point >= kMostPoints) {
+  if (point >= kMaxPoints) {
     return obstacle;
   }
   Kept& kept = kept_[point];

@@ -14,7 +14,7 @@ namespace depthgrid::control {
 class ContactMemory {
  public:
   /// Most points that are remembered; those after them are passed on unchanged.
-  static constexpr std::size_t kMostPoints = 64;
+  static constexpr std::size_t kMaxPoints = 64;
 
   /// The obstacle with its last directions put in where it has none; none older than `longest_s`. A point that has
   /// something to name is remembered. An unknown distance stays unknown. Call it once a period for every point.
@@ -28,7 +28,7 @@ class ContactMemory {
     Obstacle obstacle;
     double age_s = 0;
   };
-  std::array<Kept, kMostPoints> kept_{};
+  std::array<Kept, kMaxPoints> kept_{};
 };
 
 }  // namespace depthgrid::control

@@ -80,7 +80,7 @@ CycleOutput Controller::cycle(const CycleInput& input) noexcept {
   if (tasks_[0].velocity.size() >= 3) {
     tasks_[0].velocity.head<3>() += output.repulsion_m_s;
   }
-  const std::size_t further = std::min<std::size_t>(input.further_tasks.size(), kMostTasks - 1);
+  const std::size_t further = std::min<std::size_t>(input.further_tasks.size(), kMaxTasks - 1);
   std::copy_n(input.further_tasks.begin(), further, tasks_.begin() + 1);
 
   JointBox limits = velocity_limits(settings_.limits);

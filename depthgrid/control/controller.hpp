@@ -49,14 +49,14 @@ struct CycleInput {
   Task task;  ///< of the end effector; its first three rows are the velocity of its point in the world frame
   Obstacle end_effector;                ///< seen from that point
   std::span<const BodyPoint> body;      ///< in the same order every cycle
-  std::span<const Task> further_tasks;  ///< of lower priority, at most kMostTasks - 1
+  std::span<const Task> further_tasks;  ///< of lower priority, at most kMaxTasks - 1
 };
 
 struct CycleOutput {
   JointCommand command;
   Eigen::Vector3d repulsion_m_s = Eigen::Vector3d::Zero();  ///< V_rep, pivoted where that is on
   double largest_risk = 0;                                  ///< f over the points of the body
-  std::array<TaskResult, kMostTasks> tasks{};
+  std::array<TaskResult, kMaxTasks> tasks{};
   JointBox box;  ///< that the saturation chose from
 };
 
@@ -86,8 +86,8 @@ class Controller {
   Saturation saturation_;
   ContactMemory memory_;
   Eigen::Vector3d repulsion_before_ = Eigen::Vector3d::Zero();
-  std::array<Task, kMostTasks> tasks_;
-  std::array<ApproachLimit, kMostInequalities> approach_;
+  std::array<Task, kMaxTasks> tasks_;
+  std::array<ApproachLimit, kMaxInequalities> approach_;
 };
 
 }  // namespace depthgrid::control

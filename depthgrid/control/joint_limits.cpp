@@ -25,7 +25,7 @@ void check_positive(const char* what, double value, int joint, const char* unit)
 
 void validate(const JointLimits& limits) {
   const int joints = limits.joints();
-  if (joints < 1) {  // more than kMostJoints do not fit the type
+  if (joints < 1) {  // more than kMaxJoints do not fit the type
     fail("joint limits: there is no joint");
   }
   check_size("highest", limits.highest_rad, joints);

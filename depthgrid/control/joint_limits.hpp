@@ -15,7 +15,7 @@ struct JointLimits {
   [[nodiscard]] int joints() const noexcept { return static_cast<int>(lowest_rad.size()); }
 };
 
-/// Throws Error with joint, value and rule: 1 to kMostJoints joints, all vectors of one size, finite, lowest < highest,
+/// Throws Error with joint, value and rule: 1 to kMaxJoints joints, all vectors of one size, finite, lowest < highest,
 /// velocity and acceleration greater than 0.
 void validate(const JointLimits& limits);
 

@@ -6,18 +6,17 @@
 namespace depthgrid::control {
 
 /// Most joints of a robot.
-inline constexpr int kMostJoints = 16;
+inline constexpr int kMaxJoints = 16;
 /// Most rows of one task: three for a point, six for a pose.
-inline constexpr int kMostTaskRows = 6;
+inline constexpr int kMaxTaskRows = 6;
 
 /// One number a joint: radians (metres for sliding joints), or these per second.
-using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostJoints, 1>;
+using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxJoints, 1>;
 /// 3 x n: velocity of a point of the robot in the world frame, m/s for every rad/s of each joint.
-using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::DontAlign, 3, kMostJoints>;
-/// m x n, m <= kMostTaskRows.
-using TaskJacobian =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostTaskRows, kMostJoints>;
+using PointJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::DontAlign, 3, kMaxJoints>;
+/// m x n, m <= kMaxTaskRows.
+using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxTaskRows, kMaxJoints>;
 /// One number a row of a task.
-using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostTaskRows, 1>;
+using TaskVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxTaskRows, 1>;
 
 }  // namespace depthgrid::control

@@ -21,7 +21,7 @@ class MotionTask {
   MotionTask(const MotionTask&) = delete;
   MotionTask& operator=(const MotionTask&) = delete;
 
-  /// At most kMostTaskRows rows. The first three are the velocity of the tip's origin, world frame, since the repulsion
+  /// At most kMaxTaskRows rows. The first three are the velocity of the tip's origin, world frame, since the repulsion
   /// is added there: as a rule the first three of `tip.jacobian`, or all six.
   [[nodiscard]] virtual Task rows(const EndEffector& tip) noexcept = 0;
 };

@@ -38,7 +38,7 @@ void set_equalities(const ScaleProblem& problem, ProjectionProblem& programme) n
 void set_limits(std::span<const ApproachLimit> limits, const JointBox& box, ProjectionProblem& programme) noexcept {
   const int joints = box.joints();
   const JointVector slowest = braking(box);
-  programme.inequality.setZero(std::min<Eigen::Index>(static_cast<Eigen::Index>(limits.size()), kMostInequalities),
+  programme.inequality.setZero(std::min<Eigen::Index>(static_cast<Eigen::Index>(limits.size()), kMaxInequalities),
                                joints + 1);
   programme.inequality_value.setZero(programme.inequality.rows());
   for (int row = 0; row < programme.inequality.rows(); ++row) {

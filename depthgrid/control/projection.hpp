@@ -15,9 +15,9 @@
 namespace depthgrid::control {
 
 /// Most variables: the joints and the scale of a task.
-inline constexpr int kMostVariables = kMostJoints + 1;
+inline constexpr int kMaxVariables = kMaxJoints + 1;
 /// Most general inequalities: one for each point of the body.
-inline constexpr int kMostInequalities = 32;
+inline constexpr int kMaxInequalities = 32;
 
 enum class ProjectionStatus : std::uint8_t {
   solved,
@@ -27,12 +27,12 @@ enum class ProjectionStatus : std::uint8_t {
 
 /// All sizes consistent; lower <= upper, everything finite; rows of E and A of a length near one.
 struct ProjectionProblem {
-  using Variables = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostVariables, 1>;
+  using Variables = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxVariables, 1>;
   using EqualityRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor,
-                                     kMostVariables, kMostVariables>;
+                                     kMaxVariables, kMaxVariables>;
   using InequalityRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor,
-                                       kMostInequalities, kMostVariables>;
-  using InequalityValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMostInequalities, 1>;
+                                       kMaxInequalities, kMaxVariables>;
+  using InequalityValues = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxInequalities, 1>;
 
   Variables wanted;
   EqualityRows equality;     ///< E
@@ -73,16 +73,15 @@ class Projection {
   void release(int place) noexcept;
   void rotate_basis(int column, double c, double s) noexcept;
 
-  using Square =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostVariables, kMostVariables>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxVariables, kMaxVariables>;
   ProjectionProblem problem_;
   Variables x_;
   Square basis_;     ///< orthogonal; its first `active_` columns span the active normals
   Square triangle_;  ///< the active normals in that basis
   Variables d_;      ///< the normal at hand in that basis
   Variables multiplier_;
-  std::array<int, kMostVariables> constraint_at_{};
-  std::array<bool, 2 * kMostVariables + kMostInequalities> is_active_{};
+  std::array<int, kMaxVariables> constraint_at_{};
+  std::array<bool, 2 * kMaxVariables + kMaxInequalities> is_active_{};
   int active_ = 0;
   int equalities_ = 0;
   int steps_ = 0;

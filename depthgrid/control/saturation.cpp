@@ -91,7 +91,7 @@ SaturationResult Saturation::solve(std::span<const Task> tasks, const JointBox& 
   }
   const Solver solver{settings_.variant, box, preferred_rad_s, limits, projection_};
   JointRows taken(0, joints);
-  const std::size_t count = std::min<std::size_t>(tasks.size(), kMostTasks);
+  const std::size_t count = std::min<std::size_t>(tasks.size(), kMaxTasks);
   for (std::size_t k = 0; k < count; ++k) {
     if (!is_valid(tasks[k], joints)) {
       result.velocity_rad_s = braking(box);

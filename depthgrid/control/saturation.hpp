@@ -18,7 +18,7 @@
 namespace depthgrid::control {
 
 /// Most tasks of one call.
-inline constexpr int kMostTasks = 4;
+inline constexpr int kMaxTasks = 4;
 
 /// jacobian * velocity of the joints = velocity.
 struct Task {
@@ -60,7 +60,7 @@ struct TaskResult {
 
 struct SaturationResult {
   JointVector velocity_rad_s;  ///< always within the box
-  std::array<TaskResult, kMostTasks> tasks{};
+  std::array<TaskResult, kMaxTasks> tasks{};
 };
 
 /// Solves with scratch memory of its own; not for two threads at once.
@@ -69,7 +69,7 @@ class Saturation {
   /// Throws Error when the settings are invalid.
   explicit Saturation(const SaturationSettings& settings);
 
-  /// At most kMostTasks tasks and kMostInequalities limits are looked at. `preferred`: empty for the shortest velocity.
+  /// At most kMaxTasks tasks and kMaxInequalities limits are looked at. `preferred`: empty for the shortest velocity.
   /// A limit that even braking() does not keep is widened to what braking gives. Without tasks the joints brake. A box
   /// that is not proper gives rest and invalid tasks. Does not allocate, lock or throw.
   [[nodiscard]] SaturationResult solve(std::span<const Task> tasks, const JointBox& box,

@@ -12,8 +12,8 @@ constexpr double kSame = 1e-9;
 
 SimulatedArm::SimulatedArm(const JointLimits& limits, double period_s, const JointVector& position_rad, int latency)
     : motion_(limits, period_s), latency_(latency) {
-  if (latency < 0 || latency > kMostLatency) {
-    fail("simulated arm: latency is ", latency, " periods, must be between 0 and ", kMostLatency);
+  if (latency < 0 || latency > kMaxLatency) {
+    fail("simulated arm: latency is ", latency, " periods, must be between 0 and ", kMaxLatency);
   }
   if (!motion_.start(position_rad, JointVector::Zero(limits.joints()))) {
     fail("simulated arm: the position must be finite and have ", limits.joints(), " joints");

@@ -10,7 +10,7 @@
 namespace depthgrid::control {
 
 /// Most periods between a command and its effect.
-inline constexpr int kMostLatency = 64;
+inline constexpr int kMaxLatency = 64;
 
 /// A kinematic integrator behind the robot's interface. Nothing but the constructor allocates, locks or throws.
 class SimulatedArm final : public RobotPort {
@@ -32,7 +32,7 @@ class SimulatedArm final : public RobotPort {
 
  private:
   CommandLimiter motion_;
-  std::array<JointVector, kMostLatency + 1> commanded_;  ///< positions on their way, a ring
+  std::array<JointVector, kMaxLatency + 1> commanded_;  ///< positions on their way, a ring
   int latency_;
   std::int64_t periods_ = 0;
   std::int64_t not_followed_ = 0;

@@ -10,7 +10,7 @@ namespace {
 /// A direction that moves by less than this share of the floor is none: below it the rows would not be orthonormal.
 constexpr double kNoDirection = 1e-3;
 
-using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostTaskRows, kMostTaskRows>;
+using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxTaskRows, kMaxTaskRows>;
 
 double phi_of(double s, double floor) noexcept {
   if (s >= floor) {

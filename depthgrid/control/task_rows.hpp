@@ -13,7 +13,7 @@ namespace depthgrid::control {
 
 /// Orthonormal rows in joint space, at most one a joint.
 using JointRows =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor, kMostJoints, kMostJoints>;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign | Eigen::RowMajor, kMaxJoints, kMaxJoints>;
 
 /// One task in the coordinates that it can move.
 class TaskRows {
@@ -29,7 +29,7 @@ class TaskRows {
   [[nodiscard]] double left_out(const TaskVector& r) const noexcept;
 
  private:
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMostTaskRows, kMostTaskRows>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxTaskRows, kMaxTaskRows>;
   JointRows rows_;
   Square directions_;  ///< U, one column a row of rows_
   TaskVector phi_;

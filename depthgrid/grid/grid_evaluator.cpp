@@ -21,8 +21,8 @@ Rig checked(const Rig& rig, std::size_t principal) {
   if (principal >= rig.cameras.size()) {
     fail("grid evaluator: principal camera is ", principal, ", the rig has ", rig.cameras.size(), " cameras");
   }
-  if (rig.cameras.size() > kMostSecondaries + 1) {
-    fail("grid evaluator: the rig has ", rig.cameras.size(), " cameras, at most ", kMostSecondaries + 1,
+  if (rig.cameras.size() > kMaxSecondaries + 1) {
+    fail("grid evaluator: the rig has ", rig.cameras.size(), " cameras, at most ", kMaxSecondaries + 1,
          " are supported");
   }
   return checked_rig(rig, "grid evaluator");

@@ -25,7 +25,7 @@
 namespace depthgrid::grid {
 
 /// Most secondary cameras of one evaluator.
-inline constexpr std::size_t kMostSecondaries = 31;
+inline constexpr std::size_t kMaxSecondaries = 31;
 
 /// Scans `window` for one control point. `secondary_depths_m` are the dense images of the secondary cameras.
 template <class Map>
@@ -172,7 +172,7 @@ class LetterScan {
   int cell_of_point_;
   int cells_within_rho_;
   /// The current pixel's ray in every secondary camera.
-  std::array<Ray, kMostSecondaries> rays_;
+  std::array<Ray, kMaxSecondaries> rays_;
 };
 
 }  // namespace depthgrid::grid

@@ -170,7 +170,7 @@ Capsule around(const CylinderShape& cylinder) {
 }
 
 std::vector<Capsule> around(const BoxShape& box) {
-  constexpr double kMost = 8;
+  constexpr double kMaxCount = 8;
   int longest = 0;
   int shortest = 0;
   box.size_m.maxCoeff(&longest);
@@ -179,7 +179,7 @@ std::vector<Capsule> around(const BoxShape& box) {
     shortest = (longest + 1) % 3;
   }
   const int across = 3 - longest - shortest;
-  const int count = static_cast<int>(std::clamp(std::round(box.size_m[across] / box.size_m[shortest]), 1.0, kMost));
+  const int count = static_cast<int>(std::clamp(std::round(box.size_m[across] / box.size_m[shortest]), 1.0, kMaxCount));
   const double width_m = box.size_m[across] / count;
   const Capsule one = around(CylinderShape{0.5 * std::hypot(width_m, box.size_m[shortest]), box.size_m[longest]});
   std::vector<Capsule> result;

@@ -40,7 +40,7 @@ PixelSpan joined(const PixelSpan& a, const PixelSpan& b) {
 
 RowRange widen(const PinholeCamera& camera, const Capsule& capsule, std::span<PixelSpan> rows) noexcept {
   constexpr double kNearest = 1e-6;
-  constexpr double kMostPieces = 8;
+  constexpr double kMaxPieces = 8;
   const double r = capsule.radius_m;
   const Eigen::Vector3d along = capsule.b - capsule.a;
   if (std::max(capsule.a.z(), capsule.b.z()) < -r) {
@@ -51,7 +51,7 @@ RowRange widen(const PinholeCamera& camera, const Capsule& capsule, std::span<Pi
     std::fill(rows.begin(), rows.end(), PixelSpan{0, camera.width_px});
     return {0, height_px};
   }
-  const int pieces = static_cast<int>(std::clamp(std::ceil(2 * along.norm() / (r + kNearest)), 1.0, kMostPieces));
+  const int pieces = static_cast<int>(std::clamp(std::ceil(2 * along.norm() / (r + kNearest)), 1.0, kMaxPieces));
   RowRange touched{height_px, 0};
   Range x_before = slopes(capsule.a.x(), capsule.a.z(), r);
   Range y_before = slopes(capsule.a.y(), capsule.a.z(), r);

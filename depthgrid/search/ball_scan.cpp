@@ -22,7 +22,7 @@ constexpr int kFewBlocks = 10;
 /// Columns (or rows) of pixels or of blocks, one an element: the plane through the camera's centre and the border on
 /// the ball's side. n is its normal towards the column.
 struct Sides {
-  static constexpr std::size_t kRoom = kMostScanned + 16;
+  static constexpr std::size_t kRoom = kMaxScanned + 16;
   alignas(64) std::array<float, kRoom> distance_m;  ///< of the ball's centre from the plane; not positive: inside
   alignas(64) std::array<float, kRoom> slant;       ///< n.z
   alignas(64) std::array<float, kRoom> deepest_m;   ///< nothing of the ball is deeper there; kNever: it is not there
@@ -222,7 +222,7 @@ HWY_EXPORT(scan_lanes);
 bool can_scan(const LocalCamera& camera, const Window& window) noexcept {
   const int columns = window.u1 - window.u0 + 1;
   const int rows = window.v1 - window.v0 + 1;
-  return columns <= kMostScanned && rows <= kMostScanned && columns + 16 <= camera.width_px;
+  return columns <= kMaxScanned && rows <= kMaxScanned && columns + 16 <= camera.width_px;
 }
 
 bool scan(const LocalCamera& camera, const ScannedBall& ball, bool (*meets)(const void* context, int u, int v),

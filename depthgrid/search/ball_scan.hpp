@@ -18,7 +18,7 @@ struct ScannedBall {
 };
 
 /// Most columns or rows of a window that can be scanned.
-inline constexpr int kMostScanned = 256;
+inline constexpr int kMaxScanned = 256;
 
 /// Whether scan() takes this window in this camera's image.
 [[nodiscard]] bool can_scan(const LocalCamera& camera, const Window& window) noexcept;

@@ -11,7 +11,7 @@ namespace depthgrid::search {
 namespace {
 
 /// Pixels that a wide look reads at most; the first of them say something already.
-constexpr int kMostPixels = 4096;
+constexpr int kMaxPixels = 4096;
 
 /// What one camera says of a point.
 struct Look {
@@ -121,7 +121,7 @@ Look look_around(const Sight& sight, double near_m) noexcept {
          std::max(inside.u1 - inside.u0, inside.v1 - inside.v0) >= 16 << level) {
     ++level;
   }
-  int pixels_left = kMostPixels;
+  int pixels_left = kMaxPixels;
   sight.read_blocks(level, inside, pixels_left, result);
   return result;
 }

@@ -25,9 +25,9 @@ struct Axis {
 
 /// What a query asks of cubes; everything relative to the query's origin, metres.
 struct CubeQuery {
-  std::array<LocalCamera, views::kMostCameras> cameras;
+  std::array<LocalCamera, views::kMaxCameras> cameras;
   std::size_t camera_count = 0;
-  std::array<std::uint8_t, views::kMostCameras>
+  std::array<std::uint8_t, views::kMaxCameras>
       order{};  ///< in which cameras are asked; the last that freed cubes is first
 
   std::array<Axis, kGroup> axes;

@@ -31,7 +31,7 @@ struct Texels {
 };
 
 struct LocalCamera {
-  static constexpr std::size_t kMostTexels = 16;
+  static constexpr std::size_t kMaxTexels = 16;
   // Single precision: what the cube split reads. x_camera = rotation x_local + offset.
   std::array<float, 9> rotation{};  ///< row by row
   std::array<float, 9> absolute_rotation{};
@@ -45,7 +45,7 @@ struct LocalCamera {
   float reach_per_m = 0;  ///< growth of e with the range
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
-  std::array<Texels, kMostTexels> texels{};
+  std::array<Texels, kMaxTexels> texels{};
   const views::PyramidLevel* levels = nullptr;
   int level_count = 0;
   int width_px = 0;

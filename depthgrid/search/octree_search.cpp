@@ -24,7 +24,7 @@ constexpr double kLargestRate = 3.2;
 OctreeSearch::OctreeSearch(const views::Snapshot& snapshot, CubeQuery& query, Frontier& frontier, Count& count) noexcept
     : snapshot_(snapshot), settings_(snapshot.settings()), query_(query), frontier_(frontier), count_(count) {
   query_.camera_count = snapshot.camera_count();
-  for (std::size_t k = 0; k < views::kMostCameras; ++k) {
+  for (std::size_t k = 0; k < views::kMaxCameras; ++k) {
     query_.order[k] = static_cast<std::uint8_t>(k);
   }
   query_.uncovered_ignored = settings_.policies.unobserved == views::Policy::ignored;

@@ -12,7 +12,7 @@ namespace depthgrid::simulation {
 namespace {
 
 constexpr double kFocal = 525;
-constexpr int kMostCameras = 16;
+constexpr int kMaxCameras = 16;
 
 RigCamera camera(int number, std::string_view sensor, const Pose& T_world_camera) {
   const SensorModel& model = sensor_model(sensor);
@@ -60,8 +60,8 @@ WorkcellBody boxes(const char* name,
 Arrangement letter_arrangement(std::string_view sensor) { return arrangement(2, sensor); }
 
 Arrangement arrangement(int cameras, std::string_view sensor) {
-  if (cameras < 1 || cameras > kMostCameras) {
-    fail("arrangement of ", cameras, " cameras, must be 1 ... ", kMostCameras);
+  if (cameras < 1 || cameras > kMaxCameras) {
+    fail("arrangement of ", cameras, " cameras, must be 1 ... ", kMaxCameras);
   }
   Arrangement result;
   result.rig.name = cameras == 2 ? "the letter's two cameras" : std::to_string(cameras) + " cameras";

@@ -15,7 +15,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kInch = 0.0254;
 constexpr double kLongestBone = 2.0;  ///< [m]: a longer one means that the units are wrong
-constexpr std::size_t kMostFrames = 1000000;
+constexpr std::size_t kMaxFrames = 1000000;
 
 /// About fixed x, then y, then z.
 Eigen::Matrix3d turn(const Eigen::Vector3d& angles_rad) {
@@ -168,9 +168,8 @@ std::vector<MocapFrame> parse_amc(std::string_view text, const MocapSkeleton& sk
   const double to_rad = skeleton.degrees ? kDegree : 1.0;
   std::vector<MocapFrame> frames;
   while (!words.at_end()) {
-    if (words.take_number() != static_cast<double>(frames.size() + 1) || frames.size() >= kMostFrames) {
-      words.refuse("expected frame " + std::to_string(frames.size() + 1) + " of at most " +
-                   std::to_string(kMostFrames));
+    if (words.take_number() != static_cast<double>(frames.size() + 1) || frames.size() >= kMaxFrames) {
+      words.refuse("expected frame " + std::to_string(frames.size() + 1) + " of at most " + std::to_string(kMaxFrames));
     }
     MocapFrame& frame = frames.emplace_back();
     frame.turn_rad.assign(skeleton.bones.size(), Eigen::Vector3d::Zero());

@@ -75,8 +75,8 @@ void check_policies(const Policies& policies) {
 }  // namespace
 
 void validate(const Settings& settings, const Rig& rig) {
-  if (rig.cameras.size() > kMostCameras) {
-    fail(kName, "the rig has ", rig.cameras.size(), " cameras, at most ", kMostCameras, " are supported");
+  if (rig.cameras.size() > kMaxCameras) {
+    fail(kName, "the rig has ", rig.cameras.size(), " cameras, at most ", kMaxCameras, " are supported");
   }
   if (const auto* frustum = std::get_if<FrustumSpace>(&settings.space)) {
     check_space(*frustum, rig);

@@ -15,7 +15,7 @@
 namespace depthgrid::views {
 
 /// Most cameras of one rig.
-inline constexpr std::size_t kMostCameras = 16;
+inline constexpr std::size_t kMaxCameras = 16;
 
 /// W = what the principal camera sees between two depths: the letter's space, comparable with the grid evaluators.
 struct FrustumSpace {

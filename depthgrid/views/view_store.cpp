@@ -12,10 +12,10 @@
 namespace depthgrid::views {
 namespace {
 
-constexpr int kMostHeld = 13;
+constexpr int kMaxHeld = 13;
 /// Buffers of a camera besides those that held snapshots pin: the newest, and the one that is written next.
 constexpr int kSpareSlots = 2;
-constexpr std::size_t kMostSlots = kMostHeld + kSpareSlots;
+constexpr std::size_t kMaxSlots = kMaxHeld + kSpareSlots;
 /// How often a writer looks for a free buffer. Threads in the middle of snapshot() occupy one for an instant.
 constexpr int kAttempts = 100;
 
@@ -65,14 +65,14 @@ bool is_valid(const Pose& pose) noexcept {
 struct ViewStore::State {
   struct alignas(64) Camera {
     std::vector<View> views;
-    mutable std::array<std::atomic<std::uint32_t>, kMostSlots> references{};
+    mutable std::array<std::atomic<std::uint32_t>, kMaxSlots> references{};
   };
 
   State(const Rig& rig_in, Settings settings_in, int held_snapshots)
       : rig(checked_rig(rig_in, "view store")), settings(std::move(settings_in)), cameras(rig.cameras.size()) {
     views::validate(settings, rig);
-    if (held_snapshots < 1 || held_snapshots > kMostHeld) {
-      fail("view store: held_snapshots is ", held_snapshots, ", must be between 1 and ", kMostHeld);
+    if (held_snapshots < 1 || held_snapshots > kMaxHeld) {
+      fail("view store: held_snapshots is ", held_snapshots, ", must be between 1 and ", kMaxHeld);
     }
     for (std::size_t k = 0; k < cameras.size(); ++k) {
       // Buffer 0 is the newest at first; without a frame it frees nothing.
@@ -150,7 +150,7 @@ struct ViewStore::State {
   std::atomic<std::uint64_t> newest{0};
 };
 
-static_assert(kMostCameras * 4 <= 64, "the newest buffers of all cameras fit into one word");
+static_assert(kMaxCameras * 4 <= 64, "the newest buffers of all cameras fit into one word");
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std::uint32_t>::is_always_lock_free);
 
 ViewStore::ViewStore(const Rig& rig, const Settings& settings, int held_snapshots)

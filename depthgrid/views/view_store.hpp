@@ -77,7 +77,7 @@ class Snapshot {
 
   const ViewStore::State* state_ = nullptr;
   std::uint64_t slots_ = 0;
-  std::array<PoseMargin, kMostCameras> pose_margins_{};
+  std::array<PoseMargin, kMaxCameras> pose_margins_{};
   double reference_time_s_ = 0;
   bool stale_ = false;
 };

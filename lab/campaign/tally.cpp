@@ -20,7 +20,7 @@ void Tally::note(const std::string& kind, const std::string& line) {
   const std::string begin = kind + ", ";
   const auto same = std::count_if(lines.begin(), lines.end(),
                                   [&begin](const std::string& known) { return known.rfind(begin, 0) == 0; });
-  if (same < static_cast<std::ptrdiff_t>(kMostLines)) {
+  if (same < static_cast<std::ptrdiff_t>(kMaxLines)) {
     lines.push_back(begin + line);
   }
 }

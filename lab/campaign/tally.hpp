@@ -22,7 +22,7 @@ struct Row {
 
 /// All of one kind of images.
 struct Tally {
-  static constexpr std::size_t kMostLines = 20;
+  static constexpr std::size_t kMaxLines = 20;
 
   int width_px = 0;  ///< of all images; 0: up to 96, by the seed
   SeedRanges seeds;
@@ -34,7 +34,7 @@ struct Tally {
   std::vector<std::string> lines;                             ///< the first faults of each kind, to be asked again
   double seconds = 0;
 
-  /// Keeps the line unless there are kMostLines of this kind already.
+  /// Keeps the line unless there are kMaxLines of this kind already.
   void note(const std::string& kind, const std::string& line);
   /// Throws Error when the width differs or a seed is in both.
   void add(const Tally& other);

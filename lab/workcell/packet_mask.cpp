@@ -54,9 +54,9 @@ void PacketMask::add(const Shape& shape_camera) {
 
 /// A capsule across the image fills little of the rectangle around it.
 void PacketMask::add_in_pieces(const Capsule& capsule_camera) {
-  constexpr int kMostPieces = 8;
+  constexpr int kMaxPieces = 8;
   const Eigen::Vector3d ab = capsule_camera.b - capsule_camera.a;
-  const double wanted = std::min<double>(kMostPieces, std::ceil(ab.norm() / capsule_camera.radius_m));
+  const double wanted = std::min<double>(kMaxPieces, std::ceil(ab.norm() / capsule_camera.radius_m));
   const int pieces = std::max(1, static_cast<int>(wanted));
   const Eigen::Vector3d piece = ab / pieces;
   for (int i = 0; i < pieces; ++i) {

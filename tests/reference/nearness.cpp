@@ -10,7 +10,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// More than the rounding of any distance here.
 constexpr double kRoundingM = 1e-9;
 /// Boxes that project on more pixels are too large to be decided by single pixels: subdividing them is cheaper.
-constexpr int kMostPixels = 2048;
+constexpr int kMaxPixels = 2048;
 /// ...unless their half diagonal is this share of the reach, or less: then the reach makes them large.
 constexpr double kSmallBesideReach = 0.25;
 
@@ -111,7 +111,7 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
   window = {std::max(window.u_first, 0), std::max(window.v_first, 0), std::min(window.u_last, image.width_px - 1),
             std::min(window.v_last, image.height_px - 1)};
   // Subdividing makes the window smaller only while the box is what makes it large.
-  const bool many = width(window) > 0 && height(window) > 0 && width(window) * height(window) > kMostPixels &&
+  const bool many = width(window) > 0 && height(window) > 0 && width(window) * height(window) > kMaxPixels &&
                     box.half_diagonal_m() > kSmallBesideReach * reach_m;
   if (result_m <= useless_m) {
     return std::max(result_m, 0.0);

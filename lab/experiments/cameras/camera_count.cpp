@@ -19,7 +19,7 @@ namespace {
 
 using simulation::Motion;
 
-constexpr int kMostCameras = 8;
+constexpr int kMaxCameras = 8;
 constexpr std::array kTimedMethods{EvaluationMethod::letter_hybrid, EvaluationMethod::letter,
                                    EvaluationMethod::corrected, EvaluationMethod::search};
 /// Timed evaluations in every frame: more of those that are over sooner.
@@ -189,7 +189,7 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
   const int width_px = width_or(options, 640, 320);
   const int frames = frames_or(options, 16, 8);
   std::vector<Setup> setups;
-  for (int cameras = 1; cameras <= kMostCameras; ++cameras) {
+  for (int cameras = 1; cameras <= kMaxCameras; ++cameras) {
     setups.emplace_back(cameras, width_px, stage);
   }
   Truths truths(stage);
@@ -203,8 +203,8 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
       for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
         ask(setup, method, stage, truth, engine);
       }
-      options.progress(static_cast<std::size_t>(frame) * kMostCameras + static_cast<std::size_t>(setup.result.cameras),
-                       static_cast<std::size_t>(frames) * kMostCameras);
+      options.progress(static_cast<std::size_t>(frame) * kMaxCameras + static_cast<std::size_t>(setup.result.cameras),
+                       static_cast<std::size_t>(frames) * kMaxCameras);
     }
   }
   return medians_of(setups);
