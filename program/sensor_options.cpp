@@ -53,7 +53,7 @@ void add_sensor_options(CLI::App& command, SensorOptions& options) {
   add_margin(command, "--margin-linear", options.margin_linear, "part of m(D) that grows with D");
   add_margin(command, "--margin-quadratic", options.margin_quadratic_per_m,
              "part of m(D) that grows with D^2, 1/metre");
-  command.add_option("--margin-lateral", options.margin_lateral_px, "reach w beside a pixel, pixels")->group("Sensor");
+  command.add_option("--margin-lateral", options.margin_lateral_px, "filter radius w, pixels")->group("Sensor");
   add_margin(command, "--margin-translation", options.margin_translation_m, "calibration error of position, metres");
   add_margin(command, "--margin-rotation", options.margin_rotation_rad, "calibration error of rotation, radians");
   add_margin(command, "--margin-time", options.margin_time_m,

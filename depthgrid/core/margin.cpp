@@ -11,7 +11,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr int kLargestLateralReach = 16;
+constexpr int kMaxFilterRadius = 16;
 
 void check_part(const char* name, const char* part, double value, const char* unit) {
   if (!(std::isfinite(value) && value >= 0)) {
@@ -74,19 +74,19 @@ inline void minimum_into(const float* __restrict other, int count, float* __rest
   }
 }
 
-/// Minimum over the 2 reach + 1 neighbours in the row; 0 where they leave it.
-void filter_row(const float* source, int width_px, int reach_px, float* result) noexcept {
-  const int inner = width_px - 2 * reach_px;
+/// Minimum over the 2 w + 1 neighbours in the row; 0 where they leave it.
+void filter_row(const float* source, int width_px, int radius_px, float* result) noexcept {
+  const int inner = width_px - 2 * radius_px;
   if (inner <= 0) {
     std::fill_n(result, width_px, 0.0F);
     return;
   }
-  std::fill_n(result, reach_px, 0.0F);
-  std::copy_n(source, inner, result + reach_px);
-  for (int offset = 1; offset <= 2 * reach_px; ++offset) {
-    minimum_into(source + offset, inner, result + reach_px);
+  std::fill_n(result, radius_px, 0.0F);
+  std::copy_n(source, inner, result + radius_px);
+  for (int offset = 1; offset <= 2 * radius_px; ++offset) {
+    minimum_into(source + offset, inner, result + radius_px);
   }
-  std::fill_n(result + width_px - reach_px, reach_px, 0.0F);
+  std::fill_n(result + width_px - radius_px, radius_px, 0.0F);
 }
 
 }  // namespace
@@ -95,8 +95,8 @@ void validate(const SensorMargin& margin, const char* name) {
   check_part(name, "constant", margin.constant_m, " m");
   check_part(name, "linear", margin.linear, "");
   check_part(name, "quadratic", margin.quadratic_per_m, " 1/m");
-  if (margin.lateral_px < 0 || margin.lateral_px > kLargestLateralReach) {
-    fail(name, ": lateral reach is ", margin.lateral_px, " px, must be between 0 and ", kLargestLateralReach);
+  if (margin.lateral_px < 0 || margin.lateral_px > kMaxFilterRadius) {
+    fail(name, ": filter radius is ", margin.lateral_px, " px, must be between 0 and ", kMaxFilterRadius);
   }
 }
 
@@ -125,13 +125,13 @@ FreeDepth::FreeDepth(int width_px, int height_px, const SensorMargin& margin)
 void FreeDepth::update(const DepthImage& measured, const RobotView& robot) noexcept {
   const int width_px = free_m_.width_px();
   const int height_px = free_m_.height_px();
-  const int reach_px = margin_.lateral_px;
+  const int radius_px = margin_.lateral_px;
   const SensorMargin rounded_up = cover_rounding(margin_);
   if (measured.width_px() != width_px || measured.height_px() != height_px) {
     std::fill_n(free_m_.data(), free_m_.index(0, height_px), 0.0F);
     return;
   }
-  DepthImage& reduced_m = reach_px == 0 ? free_m_ : reduced_m_;
+  DepthImage& reduced_m = radius_px == 0 ? free_m_ : reduced_m_;
   for (int v = 0; v < height_px; ++v) {
     const float* measured_m = measured.data() + measured.index(0, v);
     float* row_m = reduced_m.data() + reduced_m.index(0, v);
@@ -140,21 +140,21 @@ void FreeDepth::update(const DepthImage& measured, const RobotView& robot) noexc
       apply_robot_row(measured_m, robot.near_m + v * robot.stride_px, robot.far_m + v * robot.stride_px, margin_,
                       width_px, row_m);
     }
-    if (reach_px > 0) {
-      filter_row(row_m, width_px, reach_px, row_minimum_m_.data() + row_minimum_m_.index(0, v));
+    if (radius_px > 0) {
+      filter_row(row_m, width_px, radius_px, row_minimum_m_.data() + row_minimum_m_.index(0, v));
     }
   }
-  if (reach_px == 0) {
+  if (radius_px == 0) {
     return;
   }
   for (int v = 0; v < height_px; ++v) {
     float* result_m = free_m_.data() + free_m_.index(0, v);
-    if (v < reach_px || v >= height_px - reach_px) {
+    if (v < radius_px || v >= height_px - radius_px) {
       std::fill_n(result_m, width_px, 0.0F);
       continue;
     }
-    std::copy_n(row_minimum_m_.data() + row_minimum_m_.index(0, v - reach_px), width_px, result_m);
-    for (int other = v - reach_px + 1; other <= v + reach_px; ++other) {
+    std::copy_n(row_minimum_m_.data() + row_minimum_m_.index(0, v - radius_px), width_px, result_m);
+    for (int other = v - radius_px + 1; other <= v + radius_px; ++other) {
       minimum_into(row_minimum_m_.data() + row_minimum_m_.index(0, other), width_px, result_m);
     }
   }

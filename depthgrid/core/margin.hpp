@@ -7,7 +7,7 @@
 namespace depthgrid {
 
 /// m(D) = constant + linear D + quadratic D^2 [m]: noise plus half a quantisation step at depth D; and the lateral
-/// reach w in pixels within which a nearer surface may hide.
+/// filter radius w in pixels within which a nearer surface may hide.
 struct SensorMargin {
   double constant_m = 0.0;
   double linear = 0.0;

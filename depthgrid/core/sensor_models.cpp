@@ -47,7 +47,7 @@ SensorModel azure_kinect(std::string_view name, std::string_view description, do
 std::array<SensorModel, 9> make_models() {
   return {{
       {"ideal",
-       "no noise, no quantisation; lateral reach 1 px",
+       "no noise, no quantisation; filter radius 1 px",
        {0.0, 0.0, 0.0, 1},
        std::nullopt,
        false,
@@ -58,18 +58,18 @@ std::array<SensorModel, 9> make_models() {
       // 0.004512 - 0.00456 z + 0.00715 z^2. A margin has no negative coefficient, so this one lies nowhere below that
       // on 0.5 ... 5 m and at most 4.3 mm above it. A reading beyond 5 m is far away, no failure: it frees up to 5 m.
       {"kinect_v1",
-       "structured light; lateral reach 2 px, 0.5 ... 5 m",
+       "structured light; filter radius 2 px, 0.5 ... 5 m",
        {0.00245, 0.0, 0.00633, 2},
        std::nullopt,
        false,
        between(0.5, 5.0, true),
        kRollingShutter30Hz,
        std::nullopt},
-      realsense("realsense_d415", "stereo, 55 mm; lateral reach 3 px, 0.45 ... 3 m", 0.055, 960.0, 0.45, 3.0,
+      realsense("realsense_d415", "stereo, 55 mm; filter radius 3 px, 0.45 ... 3 m", 0.055, 960.0, 0.45, 3.0,
                 kRollingShutter30Hz),
-      realsense("realsense_d435", "stereo, 50 mm; lateral reach 3 px, 0.28 ... 3 m", 0.050, 640.0, 0.28, 3.0,
+      realsense("realsense_d435", "stereo, 50 mm; filter radius 3 px, 0.28 ... 3 m", 0.050, 640.0, 0.28, 3.0,
                 kGlobalShutter30Hz),
-      realsense("realsense_d455", "stereo, 95 mm; lateral reach 3 px, 0.52 ... 6 m", 0.095, 640.0, 0.52, 6.0,
+      realsense("realsense_d455", "stereo, 95 mm; filter radius 3 px, 0.52 ... 6 m", 0.095, 640.0, 0.52, 6.0,
                 kGlobalShutter30Hz),
       azure_kinect("azure_kinect_nfov", "time of flight, 640 x 576; 0.5 ... 3.86 m", 0.5, 3.86, 0.0128),
       azure_kinect("azure_kinect_nfov_binned", "time of flight, 320 x 288; 0.5 ... 5.46 m", 0.5, 5.46, 0.0128),

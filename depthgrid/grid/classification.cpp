@@ -17,12 +17,12 @@ struct Look {
 Look look(const ViewingCamera& view, int u, int v, double z_m, const SensorMargin& margin, double slack_m) noexcept {
   Look result;
   const DepthImage& measured_m = *view.measured_m;
-  const int reach_px = margin.lateral_px;
+  const int radius_px = margin.lateral_px;
   // Beyond the image's edge nothing is measured, so the free depth of the pixels beside it is 0.
-  result.unmeasured =
-      u < reach_px || v < reach_px || u + reach_px >= measured_m.width_px() || v + reach_px >= measured_m.height_px();
-  for (int j = std::max(0, v - reach_px); j <= std::min(measured_m.height_px() - 1, v + reach_px); ++j) {
-    for (int i = std::max(0, u - reach_px); i <= std::min(measured_m.width_px() - 1, u + reach_px); ++i) {
+  result.unmeasured = u < radius_px || v < radius_px || u + radius_px >= measured_m.width_px() ||
+                      v + radius_px >= measured_m.height_px();
+  for (int j = std::max(0, v - radius_px); j <= std::min(measured_m.height_px() - 1, v + radius_px); ++j) {
+    for (int i = std::max(0, u - radius_px); i <= std::min(measured_m.width_px() - 1, u + radius_px); ++i) {
       const double depth_m = measured_m.at(i, j);
       if (!(depth_m > 0)) {
         result.unmeasured = true;

@@ -32,7 +32,7 @@ struct Classification {
 /// measured if some camera has one of the samples within [D - m - slack, D + m + slack] of one of these pixels'
 /// measured depths D (the nearest such camera is named); else occluded if it is behind one of them for some camera;
 /// else unmeasured if a camera looks there without measurement, or so near the
-/// image's edge that the reach leaves the image; else unobserved. A removed robot's pixel measures
+/// image's edge that the filter leaves the image; else unobserved. A removed robot's pixel measures
 /// nothing and occludes what is behind it. The samples are points of the nearest
 /// cell (world frame); slack_m is the cell's depth, within which the grid cannot tell surface from shadow.
 [[nodiscard]] Classification classify(std::span<const Eigen::Vector3d> samples_world,

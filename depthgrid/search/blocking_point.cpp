@@ -28,7 +28,7 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   }
   const double part_u = at.x_px - u;
   const double part_v = at.y_px - v;
-  const double slack = slack_m + (camera.has_reach ? camera.reach(x) : 0.0);
+  const double slack = slack_m + (camera.has_pose_error ? camera.pose_error(x) : 0.0);
   const double tangent = std::hypot(x.x(), x.y()) / x.z();
   // Beside x at lateral distance s begins a pixel whose border has the tangent t to the optical axis; a depth h beyond
   // x is within the slack there if (s + t h)^2 + h^2 <= slack^2, so if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2, c^2 (1

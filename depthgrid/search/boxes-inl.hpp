@@ -20,23 +20,23 @@ struct Boxes {
   V half_diagonal;
 };
 
-/// Bounds of the boxes in a camera's frame, a little more than rounding takes; grown by the camera's reach if asked
-/// for.
+/// Bounds of the boxes in a camera's frame, a little more than rounding takes; grown by the camera's pose error if
+/// asked for.
 struct Bounds {
   V x_low, x_high, y_low, y_high, z_low, z_high;
 };
 
-HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes, bool with_reach = true) {
+HWY_INLINE Bounds bounds_in(const LocalCamera& camera, const Boxes& boxes, bool with_pose_error = true) {
   const Floats d;
   const V x = hn::Add(weighted(camera.rotation.data(), boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[0]));
   const V y = hn::Add(weighted(camera.rotation.data() + 3, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[1]));
   const V z = hn::Add(weighted(camera.rotation.data() + 6, boxes.x, boxes.y, boxes.z), hn::Set(d, camera.offset_m[2]));
   V grown = hn::Set(d, camera.guard_m);
-  if (camera.has_reach && with_reach) {
+  if (camera.has_pose_error && with_pose_error) {
     const V range =
         hn::Add(hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))), boxes.half_diagonal);
-    const V reach = hn::Add(hn::Set(d, camera.reach_m), hn::Mul(hn::Set(d, camera.reach_per_m), range));
-    grown = hn::Add(grown, hn::Mul(reach, hn::Set(d, 1.00001F)));
+    const V pose_error = hn::Add(hn::Set(d, camera.pose_error_m), hn::Mul(hn::Set(d, camera.pose_error_per_m), range));
+    grown = hn::Add(grown, hn::Mul(pose_error, hn::Set(d, 1.00001F)));
   }
   const float* HWY_RESTRICT spread = camera.absolute_rotation.data();
   const V half_x = hn::Add(weighted(spread, boxes.half_x, boxes.half_y, boxes.half_z), grown);

@@ -39,7 +39,7 @@ struct Sight {
   const SensorMargin& margin;
   const PinholeCamera& pinhole;
   Eigen::Vector3d p;
-  double slack_m;  ///< resolution and reach
+  double slack_m;  ///< resolution and pose error
 
   [[nodiscard]] PixelWindow whole() const noexcept { return {0, 0, pinhole.width_px - 1, pinhole.height_px - 1}; }
 

@@ -14,12 +14,12 @@ struct Classification {
   std::optional<std::uint16_t> camera;
 };
 
-/// measured: some camera has the point within its margin, the resolution and its reach of a depth measured in one of
-/// the pixels that the point's free depth was taken from, or, when these say nothing, in those beside them that keep
-/// the ball of resolution and reach around the point from being free (the nearest such camera is named); else occluded:
-/// behind a measured pixel of a camera that looks there; else unmeasured: a camera looks there without measurement, or
-/// so near the image's edge that the filter or the ball leaves the image, or the ball reaches its blind zone; else
-/// unobserved.
+/// measured: some camera has the point within its margin, the resolution and its pose error of a depth measured in one
+/// of the pixels that the point's free depth was taken from, or, when these say nothing, in those beside them that keep
+/// the ball of resolution and pose error around the point from being free (the nearest such camera is named); else
+/// occluded: behind a measured pixel of a camera that looks there; else unmeasured: a camera looks there without
+/// measurement, or so near the image's edge that the filter or the ball leaves the image, or the ball reaches its blind
+/// zone; else unobserved.
 [[nodiscard]] Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& x_world) noexcept;
 
 }  // namespace depthgrid::search

@@ -54,9 +54,9 @@ HWY_INLINE M not_freed(CubeQuery& query, std::span<const Cube> parents, float ha
     const Bounds bounds = bounds_in(camera, boxes);
     const PixelBounds pixels = pixel_bounds(camera, parents, half_m);
     M gone = freed_whole(camera, open, bounds, pixels);
-    // W and what a camera covers have nothing to do with its reach.
+    // W and what a camera covers have nothing to do with its pose error.
     const bool plain = query.principal == static_cast<int>(k) || query.uncovered_ignored;
-    const Bounds own = plain && camera.has_reach ? bounds_in(camera, boxes, false) : bounds;
+    const Bounds own = plain && camera.has_pose_error ? bounds_in(camera, boxes, false) : bounds;
     if (query.principal == static_cast<int>(k)) {
       gone = hn::Or(gone, outside_view(query, camera, own));
     }

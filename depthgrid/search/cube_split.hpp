@@ -46,9 +46,9 @@ struct CubeQuery {
 struct Children {
   std::array<Cube, kSplit> cubes{};
   int count = 0;
-  /// Of each child, bit i: every camera seems to have not-free space within slack and reach of the point that lies at
-  /// the child's distance from axis i, towards its centre. A hint: in single precision, roughly for segments, and the
-  /// robot's islands are not looked at.
+  /// Of each child, bit i: every camera seems to have not-free space within slack and pose error of the point that lies
+  /// at the child's distance from axis i, towards its centre. A hint: in single precision, roughly for segments, and
+  /// the robot's islands are not looked at.
   std::array<std::uint32_t, kSplit> tight_witness{};
 };
 

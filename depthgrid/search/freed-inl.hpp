@@ -170,7 +170,7 @@ HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bo
   const M empty = hn::Or(hn::Or(hn::Or(hn::Lt(z_high, z_low), hn::Lt(z_high, tiny)),
                                 hn::Or(hn::Lt(whole.u_high, zero), hn::Ge(whole.u_low, hn::Set(d, camera.width)))),
                          hn::Or(hn::Lt(whole.v_high, zero), hn::Ge(whole.v_low, hn::Set(d, camera.height))));
-  if (hn::AllTrue(d, empty) || camera.has_reach) {
+  if (hn::AllTrue(d, empty) || camera.has_pose_error) {
     return empty;
   }
   const V last_u = hn::Set(d, camera.width - 1);

@@ -51,13 +51,13 @@ void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen
   local.width = static_cast<float>(pinhole.width_px);
   local.height = static_cast<float>(pinhole.height_px);
   local.blind_m = local.near_m > 0 ? float_above(local.near_m) : 0.0F;
-  local.has_reach =
+  local.has_pose_error =
       local.pose_margin.translation_m > 0 || local.pose_margin.rotation_rad > 0 || local.pose_margin.time_m > 0;
-  local.reach_m = float_above(local.pose_margin.translation_m + local.pose_margin.time_m);
-  local.reach_per_m = float_above(local.pose_margin.rotation_rad);
-  if (!local.has_reach) {
-    local.reach_m = 0;
-    local.reach_per_m = 0;
+  local.pose_error_m = float_above(local.pose_margin.translation_m + local.pose_margin.time_m);
+  local.pose_error_per_m = float_above(local.pose_margin.rotation_rad);
+  if (!local.has_pose_error) {
+    local.pose_error_m = 0;
+    local.pose_error_per_m = 0;
   }
   local.free_m = image.free_m.data();
   local.minima_m = image.minima_m.data();
@@ -72,7 +72,7 @@ void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen
   local.has_islands = image.has_islands;
   const auto* frustum = std::get_if<views::FrustumSpace>(&snapshot.settings().space);
   const bool is_principal = frustum != nullptr && frustum->principal == camera;
-  local.space = is_principal && !local.has_reach ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};
+  local.space = is_principal && !local.has_pose_error ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};
   // Covered is what lies beyond the blind zone, its end excluded.
   constexpr double kBeyondM = 1e-9;
   const double from_m = local.near_m + kBeyondM;

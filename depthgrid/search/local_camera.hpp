@@ -40,18 +40,18 @@ struct LocalCamera {
   float guard_px = 0;  ///< more than the rounding of a projection inside the image
   float fx = 0, fy = 0, cx = 0, cy = 0;
   float width = 0, height = 0;
-  float blind_m = 0;      ///< nothing up to this depth is free (a little above the blind zone's end)
-  float reach_m = 0;      ///< e at the camera's centre
-  float reach_per_m = 0;  ///< growth of e with the range
+  float blind_m = 0;           ///< nothing up to this depth is free (a little above the blind zone's end)
+  float pose_error_m = 0;      ///< e at the camera's centre
+  float pose_error_per_m = 0;  ///< growth of e with the range
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
   std::array<Texels, kMaxTexels> texels{};
   const views::PyramidLevel* levels = nullptr;
   int level_count = 0;
   int width_px = 0;
-  bool has_reach = false;
+  bool has_pose_error = false;
   bool has_islands = false;
-  /// What counts at all: the view between two depths where that is W. Only without reach: with it a point near the
+  /// What counts at all: the view between two depths where that is W. Only without pose error: with it a point near the
   /// border of the view is not free, whatever counts beyond the border.
   Clip space;
   /// What the camera covers, as far as it counts.
@@ -69,7 +69,7 @@ struct LocalCamera {
     return R_camera_world * x_local + offset_camera_m;
   }
   /// e at a point, metres.
-  [[nodiscard]] double reach(const Eigen::Vector3d& x_camera) const noexcept {
+  [[nodiscard]] double pose_error(const Eigen::Vector3d& x_camera) const noexcept {
     return pose_margin.translation_m + pose_margin.time_m + pose_margin.rotation_rad * x_camera.norm();
   }
 };

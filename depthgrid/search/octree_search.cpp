@@ -16,7 +16,7 @@ constexpr double kSqrt3 = 1.7320508075688772;
 constexpr double kBorderResolution = 0.5e-3;
 /// Primitives this near to each other share an origin, metres. Single precision resolves a micrometre there.
 constexpr double kSharedExtent = 4.0;
-/// Of the cameras' reach with range, as far as leaves follow it.
+/// How the cameras' pose error grows with range, as far as leaves follow it.
 constexpr double kLargestRate = 3.2;
 
 }  // namespace
@@ -29,16 +29,16 @@ OctreeSearch::OctreeSearch(const views::Snapshot& snapshot, CubeQuery& query, Fr
   }
   query_.uncovered_ignored = settings_.policies.unobserved == views::Policy::ignored;
   query_.slack_m = float_below(settings_.resolution_m - 1e-5);
-  least_reach_m_ = 1e30;
+  least_pose_error_m_ = 1e30;
   for (std::size_t k = 0; k < query_.camera_count; ++k) {
     const PoseMargin& e = snapshot.pose_margin(k);
-    const double reach_m = e.translation_m + e.time_m;
-    least_reach_m_ = std::min(least_reach_m_, reach_m);
+    const double pose_error_m = e.translation_m + e.time_m;
+    least_pose_error_m_ = std::min(least_pose_error_m_, pose_error_m);
     largest_rate_ = std::max(largest_rate_, e.rotation_rad);
   }
-  // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and reach of
-  // each of its points. e_k varies by less than rate * diagonal within a cube.
-  // With a rate of half a turn and more a camera frees nothing anyway: no reason for ever smaller leaves.
+  // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and pose error
+  // of each of its points. e_k varies by less than rate * diagonal within a cube. With a rate of half a turn and more a
+  // camera frees nothing anyway: no reason for ever smaller leaves.
   const double leaf_diagonal_m = (settings_.resolution_m - 2e-5) / (1 + std::min(largest_rate_, kLargestRate));
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
 }
@@ -80,7 +80,7 @@ void OctreeSearch::aim(const Eigen::Vector3d& middle_world, double extent_m) noe
     ++last_level_;
   }
   exact_level_ = leaf_level_;
-  while (exact_level_ > 0 && static_cast<double>(half_side_m(exact_level_ - 1)) <= least_reach_m_) {
+  while (exact_level_ > 0 && static_cast<double>(half_side_m(exact_level_ - 1)) <= least_pose_error_m_) {
     --exact_level_;
   }
 
@@ -141,7 +141,7 @@ bool OctreeSearch::is_blocked(const Eigen::Vector3d& x_local, double slack_m) co
   return covered && in_space(x_local);
 }
 
-/// Some camera frees the ball around the cube with all its reach; or all that is covered of the ball is free.
+/// Some camera frees the ball around the cube with all its pose error; or all that is covered of the ball is free.
 bool OctreeSearch::is_free(const Cube& cube) noexcept {
   const Box box = box_of(cube);
   const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
@@ -150,16 +150,16 @@ bool OctreeSearch::is_free(const Cube& cube) noexcept {
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
     const Eigen::Vector3d c = camera.to_camera(centre);
-    const double reach_m = camera.has_reach ? camera.reach(c) + largest_rate_ * half_diagonal_m : 0.0;
+    const double pose_error_m = camera.has_pose_error ? camera.pose_error(c) + largest_rate_ * half_diagonal_m : 0.0;
     // Most balls that meet not-free space do so in one of the pixels nearest to their centre.
     if (camera.space.to_view || !blocks(camera, centre, half_diagonal_m)) {
       ++count_.ball_tests;
-      if (!meets_not_free(camera, camera.space, c, half_diagonal_m + reach_m)) {
+      if (!meets_not_free(camera, camera.space, c, half_diagonal_m + pose_error_m)) {
         return true;
       }
     }
-    uncovered = uncovered && (camera.has_reach ? !covers_some(camera, c, half_diagonal_m)
-                                               : !meets_not_free(camera, camera.coverage, c, half_diagonal_m));
+    uncovered = uncovered && (camera.has_pose_error ? !covers_some(camera, c, half_diagonal_m)
+                                                    : !meets_not_free(camera, camera.coverage, c, half_diagonal_m));
   }
   return uncovered;
 }

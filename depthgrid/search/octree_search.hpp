@@ -87,12 +87,13 @@ class OctreeSearch {
   Cube root_{};
   static constexpr std::size_t kLevels = 64;
   std::array<float, kLevels> half_m_{};
-  double largest_rate_ = 0;  ///< of the cameras' reach with range
+  double largest_rate_ = 0;  ///< of the cameras' pose error with range
   double leaf_half_m_ = 0;
-  double least_reach_m_ = 0;
-  int leaf_level_ = 0;   ///< cubes of this level are not split any further
-  int last_level_ = 0;   ///< but where the border of a frustum W runs through one it is split down to this level
-  int exact_level_ = 0;  ///< from this level on a ball is tested too, not only a box, because of the cameras' reach
+  double least_pose_error_m_ = 0;
+  int leaf_level_ = 0;  ///< cubes of this level are not split any further
+  int last_level_ = 0;  ///< but where the border of a frustum W runs through one it is split down to this level
+  int exact_level_ =
+      0;  ///< from this level on a ball is tested too, not only a box, because of the cameras' pose error
 };
 
 }  // namespace depthgrid::search

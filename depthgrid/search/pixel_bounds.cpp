@@ -29,10 +29,10 @@ PixelBounds pixel_bounds_of(const LocalCamera& camera, const Cube& parent, float
   const float y = r[3] * parent.x + r[4] * parent.y + r[5] * parent.z + camera.offset_m[1];
   const float z = r[6] * parent.x + r[7] * parent.y + r[8] * parent.z + camera.offset_m[2];
   float grown = 2 * camera.guard_m;
-  if (camera.has_reach) {
+  if (camera.has_pose_error) {
     // A child that W cuts has its centre up to 3.5 half sides from the parent's.
     const float range = std::sqrt(x * x + y * y + z * z) + 6 * half_m;
-    grown += (camera.reach_m + camera.reach_per_m * range) * 1.0001F;
+    grown += (camera.pose_error_m + camera.pose_error_per_m * range) * 1.0001F;
   }
   const float spread_x = (a[0] + a[1] + a[2]) * half_m;
   const float spread_y = (a[3] + a[4] + a[5]) * half_m;

@@ -120,13 +120,13 @@ void Search::State::group(const views::Snapshot& snapshot, std::span<const Plan>
   const double rho_m = snapshot.settings().rho_m;
   Eigen::Vector3d low = group_plans.front().capsule.a;
   Eigen::Vector3d high = low;
-  double reach_m = 0;
+  double query_radius_m = 0;
   for (const Plan& p : group_plans) {
     low = low.cwiseMin(p.capsule.a).cwiseMin(p.capsule.b);
     high = high.cwiseMax(p.capsule.a).cwiseMax(p.capsule.b);
-    reach_m = std::max(reach_m, rho_m + p.capsule.radius_m);
+    query_radius_m = std::max(query_radius_m, rho_m + p.capsule.radius_m);
   }
-  octree.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + reach_m);
+  octree.aim(0.5 * (low + high), 0.5 * (high - low).maxCoeff() + query_radius_m);
   for (const Plan& p : group_plans) {
     octree.add(p.capsule, p.limit_m);
   }

@@ -17,16 +17,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::views::HWY_NAMESPACE {
 
-/// Minima of codes along the row. kReach is w, or 0 where it is not known here.
-template <int kReach>
-HWY_INLINE void narrow_minimum(const std::uint16_t* HWY_RESTRICT codes, int width_px, int reach_if_unknown,
+/// Minima of codes along the row. kRadius is w, or 0 where it is not known here.
+template <int kRadius>
+HWY_INLINE void narrow_minimum(const std::uint16_t* HWY_RESTRICT codes, int width_px, int radius_if_unknown,
                                std::uint16_t* HWY_RESTRICT minimum) {
   const Units d;
-  const int reach_px = kReach > 0 ? kReach : reach_if_unknown;
+  const int radius_px = kRadius > 0 ? kRadius : radius_if_unknown;
   // A few columns more: zeros that windows read.
   for (int u = 0; u < width_px + 4; u += lanes(d)) {
-    auto smallest = hn::Min(hn::LoadU(d, codes + u - reach_px), hn::LoadU(d, codes + u + reach_px));
-    for (int k = 1 - reach_px; k < reach_px; ++k) {
+    auto smallest = hn::Min(hn::LoadU(d, codes + u - radius_px), hn::LoadU(d, codes + u + radius_px));
+    for (int k = 1 - radius_px; k < radius_px; ++k) {
       smallest = hn::Min(smallest, hn::LoadU(d, codes + u + k));
     }
     hn::StoreU(smallest, d, minimum + u);

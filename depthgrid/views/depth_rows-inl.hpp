@@ -50,38 +50,38 @@ HWY_INLINE void reduce_row(D d_values, const Reader& reader, const Reduction& re
     hn::StoreU(result, d, reduced_m + u);
   });
   if (columns.end == width_px) {
-    std::fill_n(reduced_m + width_px, image.reach_px, 0.0F);
+    std::fill_n(reduced_m + width_px, image.radius_px, 0.0F);
   }
 }
 
 /// Minima over the 2 w + 1 neighbours in the row.
-template <int kReach>
-HWY_INLINE void filter_row(const float* HWY_RESTRICT reduced_m, const PixelRange& columns, int reach_if_unknown,
+template <int kRadius>
+HWY_INLINE void filter_row(const float* HWY_RESTRICT reduced_m, const PixelRange& columns, int radius_if_unknown,
                            float* HWY_RESTRICT minimum_m) {
   const Floats d;
-  const int reach_px = kReach > 0 ? kReach : reach_if_unknown;
+  const int radius_px = kRadius > 0 ? kRadius : radius_if_unknown;
   for (int u = columns.begin; u < columns.end; u += lanes(d)) {
-    V smallest = hn::LoadU(d, reduced_m + u - reach_px);
-    for (int k = 1 - reach_px; k <= reach_px; ++k) {
+    V smallest = hn::LoadU(d, reduced_m + u - radius_px);
+    for (int k = 1 - radius_px; k <= radius_px; ++k) {
       smallest = hn::Min(smallest, hn::LoadU(d, reduced_m + u + k));
     }
     hn::StoreU(smallest, d, minimum_m + u);
   }
 }
 
-/// g of one row from the minima of the rows around it. kReach is w, or 0 where it is not known here.
-template <int kReach>
-HWY_INLINE void filter_columns(PreparationRows& rows, const PixelRange& columns, int reach_if_unknown, int v,
+/// g of one row from the minima of the rows around it. kRadius is w, or 0 where it is not known here.
+template <int kRadius>
+HWY_INLINE void filter_columns(PreparationRows& rows, const PixelRange& columns, int radius_if_unknown, int v,
                                float* HWY_RESTRICT free_m) {
   const Floats d;
-  const int reach_px = kReach > 0 ? kReach : reach_if_unknown;
-  std::array<const float*, 2 * (kReach > 0 ? kReach : kLargestReach) + 1> around{};
-  for (int i = 0; i <= 2 * reach_px; ++i) {
-    around[i] = rows.minimum_m(v - reach_px + i);
+  const int radius_px = kRadius > 0 ? kRadius : radius_if_unknown;
+  std::array<const float*, 2 * (kRadius > 0 ? kRadius : kMaxFilterRadius) + 1> around{};
+  for (int i = 0; i <= 2 * radius_px; ++i) {
+    around[i] = rows.minimum_m(v - radius_px + i);
   }
   for_columns(columns, lanes(d), [&](int u, const auto& part) HWY_ATTR {
     V smallest = hn::LoadU(d, around[0] + u);
-    for (int i = 1; i <= 2 * reach_px; ++i) {
+    for (int i = 1; i <= 2 * radius_px; ++i) {
       smallest = hn::Min(smallest, hn::LoadU(d, around[i] + u));
     }
     part.store(smallest, d, free_m + u);

@@ -20,9 +20,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::views::HWY_NAMESPACE {
 
-/// The passes over one image. Rows are taken in as soon as the next ones need them. kReach is w, or 0 where it is not
+/// The passes over one image. Rows are taken in as soon as the next ones need them. kRadius is w, or 0 where it is not
 /// known here.
-template <bool kUnits, int kReach>
+template <bool kUnits, int kRadius>
 class Passes {
  public:
   HWY_INLINE Passes(const Reading& reading, const NewImage& image, PreparationRows& rows, PreparedImage& result)
@@ -32,7 +32,7 @@ class Passes {
         result_(result),
         width_px_(image.depth.width_px),
         height_px_(image.depth.height_px),
-        narrow_(kUnits && reading.ascending && image.reach_px > 0) {}
+        narrow_(kUnits && reading.ascending && image.radius_px > 0) {}
 
   HWY_INLINE PixelRange run() {
     rows_.columns().begin(!narrow_);
@@ -41,7 +41,7 @@ class Passes {
     int searched = 0;
     // Level 0 lags behind by three rows, whose texels cover the rows below them.
     for (int v = 0; v < height_px_ + 3; v += 2) {
-      const int end = std::min(v + 2 + image_.reach_px, height_px_);
+      const int end = std::min(v + 2 + image_.radius_px, height_px_);
       for (; image_.robot.near_m != nullptr && searched < std::min(end + rows_.columns().lookahead(), height_px_);
            ++searched) {
         rows_.columns().add_robot(searched, robot_columns(image_, searched));
@@ -71,7 +71,7 @@ class Passes {
       }
     }
     for (int v = begin; v < end && narrow_; ++v) {
-      narrow_minimum<kReach>(rows_.codes(v), width_px_, image_.reach_px, rows_.narrow_minimum(v));
+      narrow_minimum<kRadius>(rows_.codes(v), width_px_, image_.radius_px, rows_.narrow_minimum(v));
     }
     for (int v = begin; v < end && narrow_; ++v) {
       narrow_window(rows_.narrow_minimum(v), width_px_, rows_.narrow_window(v));
@@ -88,22 +88,22 @@ class Passes {
         reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
                    pixel_row(reinterpret_cast<const float*>(result_.kept.data()), width_px_, v), reduced, rows_);
       }
-      filter_row<kReach>(rows_.reduced_m(), rows_.columns().filtered(v), image_.reach_px, rows_.minimum_m(v));
+      filter_row<kRadius>(rows_.reduced_m(), rows_.columns().filtered(v), image_.radius_px, rows_.minimum_m(v));
     }
   }
 
   /// The rows v and v + 1 of a result, where they exist, from minima of codes; what is done in single precision is left
   /// out if both rows have it.
   template <int kCount, class RowOf, class FloatColumnsOf>
-  HWY_INLINE void from_codes(const RowOf& row_of, int v, int reach_below, float* pixels,
+  HWY_INLINE void from_codes(const RowOf& row_of, int v, int rows_below, float* pixels,
                              const FloatColumnsOf& in_floats) {
     const auto exists = [&](int row) { return row >= 0 && row < height_px_; };
     const auto floats = [&](int row) { return exists(row) ? in_floats(row) : PixelRange{0, width_px_}; };
     const auto result = [&](int row) { return exists(row) ? pixel_row(pixels, width_px_, row) : nullptr; };
-    const int count = 2 * image_.reach_px + 1 + reach_below;
-    std::array<const std::uint16_t*, (kCount > 0 ? kCount : 2 * kLargestReach + 4) + 1> rows{};
+    const int count = 2 * image_.radius_px + 1 + rows_below;
+    std::array<const std::uint16_t*, (kCount > 0 ? kCount : 2 * kMaxFilterRadius + 4) + 1> rows{};
     for (int i = 0; i <= count; ++i) {
-      rows[i] = row_of(v - image_.reach_px + i);
+      rows[i] = row_of(v - image_.radius_px + i);
     }
     const auto convert = [&](const PixelRange& columns) HWY_ATTR {
       reading_.has_beyond
@@ -121,13 +121,13 @@ class Passes {
   HWY_INLINE PixelRange free_rows(int v) {
     PixelRange island_rows;
     if (narrow_) {
-      from_codes<kReach == 0 ? 0 : 2 * kReach + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
-                                                   result_.free_m.data(),
-                                                   [&](int row) { return rows_.columns().free(row); });
+      from_codes<kRadius == 0 ? 0 : 2 * kRadius + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
+                                                     result_.free_m.data(),
+                                                     [&](int row) { return rows_.columns().free(row); });
     }
     for (int row = v; row < std::min(v + 2, height_px_); ++row) {
       float* free_m = pixel_row(result_.free_m.data(), width_px_, row);
-      filter_columns<kReach>(rows_, rows_.columns().free(row), image_.reach_px, row, free_m);
+      filter_columns<kRadius>(rows_, rows_.columns().free(row), image_.radius_px, row, free_m);
       const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns().robot(row) : PixelRange{};
       if (!robot.empty() && join_robot(image_, row, robot, result_, free_m)) {
         island_rows = joined(island_rows, {row, row + 1});
@@ -141,8 +141,8 @@ class Passes {
   HWY_INLINE void first_level(int j) {
     float* level = result_.minima_m.data() + result_.levels[0].offset;
     if (narrow_) {
-      from_codes<kReach == 0 ? 0 : 2 * kReach + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
-                                                   [&](int row) { return rows_.columns().texels(row); });
+      from_codes<kRadius == 0 ? 0 : 2 * kRadius + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
+                                                     [&](int row) { return rows_.columns().texels(row); });
     }
     for (int row = std::max(j, 0); row < std::min(j + 2, height_px_); ++row) {
       first_level_row(rows_, rows_.columns().texels(row), row, pixel_row(level, width_px_, row));
@@ -162,8 +162,8 @@ class Passes {
 template <bool kUnits>
 HWY_INLINE PixelRange prepare_as(const Reading& reading, const NewImage& image, PreparationRows& rows,
                                  PreparedImage& result) {
-  return image.reach_px == 1 ? Passes<kUnits, 1>(reading, image, rows, result).run()
-                             : Passes<kUnits, 0>(reading, image, rows, result).run();
+  return image.radius_px == 1 ? Passes<kUnits, 1>(reading, image, rows, result).run()
+                              : Passes<kUnits, 0>(reading, image, rows, result).run();
 }
 
 PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows, PreparedImage& result) {

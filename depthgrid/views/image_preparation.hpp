@@ -17,7 +17,7 @@ namespace depthgrid::views {
 struct NewImage {
   DepthView depth;     ///< with its stride
   RobotView robot;     ///< with its stride
-  int reach_px = 0;    ///< w
+  int radius_px = 0;   ///< w
   float pocket_m = 0;  ///< ignored beyond the robot's exit, rounded towards zero
   float blind_m = 0;   ///< where the blind zone ends, rounded up
 };

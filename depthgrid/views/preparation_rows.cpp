@@ -5,8 +5,8 @@
 
 namespace depthgrid::views {
 
-FloatColumns::FloatColumns(int width_px, int height_px, int reach_px)
-    : width_px_(width_px), height_px_(height_px), reach_px_(reach_px), robot_(static_cast<std::size_t>(height_px)) {}
+FloatColumns::FloatColumns(int width_px, int height_px, int radius_px)
+    : width_px_(width_px), height_px_(height_px), radius_px_(radius_px), robot_(static_cast<std::size_t>(height_px)) {}
 
 void FloatColumns::begin(bool everything) noexcept {
   everything_ = everything;
@@ -37,12 +37,12 @@ PixelRange FloatColumns::around(int first, int last, int left, int right) const 
           std::min((all.end + right + kStep - 1) / kStep * kStep, width_px_)};
 }
 
-PreparationRows::PreparationRows(int width_px, int height_px, int reach_px)
-    : columns_(width_px, height_px, reach_px),
+PreparationRows::PreparationRows(int width_px, int height_px, int radius_px)
+    : columns_(width_px, height_px, radius_px),
       height_px_(height_px),
-      reach_px_(reach_px),
-      narrow_(width_px, kNarrow + 5 * reach_px + 9),
-      wide_(width_px, kWide + 2 * reach_px + 7) {
+      radius_px_(radius_px),
+      narrow_(width_px, kNarrow + 5 * radius_px + 9),
+      wide_(width_px, kWide + 2 * radius_px + 7) {
   wide_.fill(kInfinite, std::numeric_limits<float>::infinity());
 }
 

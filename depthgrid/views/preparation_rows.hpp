@@ -12,42 +12,42 @@
 
 namespace depthgrid::views {
 
-/// The columns of each row that are worked out in single precision because of the robot, w being the reach of the
+/// The columns of each row that are worked out in single precision because of the robot, w being the radius of the
 /// filter. All begin and end at multiples of kStep, or at the image's border, so that they do not depend on the length
 /// of vectors.
 class FloatColumns {
  public:
   static constexpr int kStep = 16;
 
-  FloatColumns(int width_px, int height_px, int reach_px);
+  FloatColumns(int width_px, int height_px, int radius_px);
 
   /// Before the first row of an image. `everything`: all columns of all rows, wherever the robot is.
   void begin(bool everything) noexcept;
   /// Rows from row v on that a function may ask about are those up to here minus lookahead().
-  [[nodiscard]] int lookahead() const noexcept { return std::max(2 * reach_px_, reach_px_ + 3); }
+  [[nodiscard]] int lookahead() const noexcept { return std::max(2 * radius_px_, radius_px_ + 3); }
   /// Where row v shows the robot. Rows come in their order.
   void add_robot(int v, const PixelRange& columns) noexcept;
   [[nodiscard]] const PixelRange& robot(int v) const noexcept { return robot_[static_cast<std::size_t>(v)]; }
 
   /// g depends on the robot.
   [[nodiscard]] PixelRange free(int v) const noexcept {
-    return around(v - reach_px_, v + reach_px_, reach_px_, reach_px_);
+    return around(v - radius_px_, v + radius_px_, radius_px_, radius_px_);
   }
   /// Minima along the row that free() reads.
   [[nodiscard]] PixelRange filtered(int v) const noexcept {
-    return around(v - 2 * reach_px_, v + 2 * reach_px_, reach_px_, reach_px_);
+    return around(v - 2 * radius_px_, v + 2 * radius_px_, radius_px_, radius_px_);
   }
   /// What those read.
   [[nodiscard]] PixelRange reduced(int v) const noexcept {
-    return around(v - 2 * reach_px_, v + 2 * reach_px_, 2 * reach_px_ + kStep, 2 * reach_px_ + kStep);
+    return around(v - 2 * radius_px_, v + 2 * radius_px_, 2 * radius_px_ + kStep, 2 * radius_px_ + kStep);
   }
   /// Texels of level 0 that depend on free().
   [[nodiscard]] PixelRange texels(int v) const noexcept {
-    return around(v - reach_px_, v + 3 + reach_px_, reach_px_ + 3 + kStep, reach_px_);
+    return around(v - radius_px_, v + 3 + radius_px_, radius_px_ + 3 + kStep, radius_px_);
   }
   /// Minima along the row that texels() reads.
   [[nodiscard]] PixelRange windows(int v) const noexcept {
-    return around(v - 3 - reach_px_, v + 3 + reach_px_, reach_px_ + 3 + kStep, reach_px_);
+    return around(v - 3 - radius_px_, v + 3 + radius_px_, radius_px_ + 3 + kStep, radius_px_);
   }
 
  private:
@@ -57,7 +57,7 @@ class FloatColumns {
 
   int width_px_;
   int height_px_;
-  int reach_px_;
+  int radius_px_;
   bool everything_ = false;
   int first_robot_row_ = 0;
   int last_robot_row_ = -1;
@@ -82,32 +82,32 @@ class ScratchRows {
   AlignedVector<Value> values_;
 };
 
-/// Rows that are kept for as long as the next passes read them; w is the reach of the filter.
+/// Rows that are kept for as long as the next passes read them; w is the radius of the filter.
 class PreparationRows {
  public:
-  PreparationRows(int width_px, int height_px, int reach_px);
+  PreparationRows(int width_px, int height_px, int radius_px);
 
   /// Codes of row v (see Reading); zeros before and behind the row. The last w + 2 rows are kept.
   [[nodiscard]] std::uint16_t* codes(int v) noexcept {
-    return narrow_[kNarrow + 4 * reach_px_ + 7 + v % (reach_px_ + 2)];
+    return narrow_[kNarrow + 4 * radius_px_ + 7 + v % (radius_px_ + 2)];
   }
   /// Minima of each value and w to both sides; all zero outside the image. The last 2 w + 2 rows are kept.
   [[nodiscard]] std::uint16_t* narrow_minimum(int v) noexcept {
-    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + v % (2 * reach_px_ + 2)];
+    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + v % (2 * radius_px_ + 2)];
   }
   /// Minima of those of each column and the three to its right. The last 2 w + 5 rows are kept.
   [[nodiscard]] std::uint16_t* narrow_window(int v) noexcept {
-    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + 2 * reach_px_ + 2 + v % (2 * reach_px_ + 5)];
+    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + 2 * radius_px_ + 2 + v % (2 * radius_px_ + 5)];
   }
   /// Reduced depths of one row; zeros before and behind the row.
   [[nodiscard]] float* reduced_m() noexcept { return wide_[2]; }
   /// Minima of each reduced depth and w to both sides; all zero outside the image. The last 2 w + 2 rows are kept.
   [[nodiscard]] float* minimum_m(int v) noexcept {
-    return outside(v) ? wide_[kZero] : wide_[kWide + v % (2 * reach_px_ + 2)];
+    return outside(v) ? wide_[kZero] : wide_[kWide + v % (2 * radius_px_ + 2)];
   }
   /// Minima of each free depth and the three to its right; all infinite outside the image. The last five rows are kept.
   [[nodiscard]] float* window_m(int v) noexcept {
-    return outside(v) ? wide_[kInfinite] : wide_[kWide + 2 * reach_px_ + 2 + v % 5];
+    return outside(v) ? wide_[kInfinite] : wide_[kWide + 2 * radius_px_ + 2 + v % 5];
   }
   /// For the intermediate result of one row of texels.
   [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
@@ -123,7 +123,7 @@ class PreparationRows {
 
   FloatColumns columns_;
   int height_px_;
-  int reach_px_;
+  int radius_px_;
   ScratchRows<std::uint16_t> narrow_;
   ScratchRows<float> wide_;
 };

@@ -100,12 +100,12 @@ HWY_INLINE void first_row(const Extremum& extremum, const float* image, const Py
 
 /// Texels that cover only columns of this range: those from `step` i to `step` i + 3 or so, as far as there are
 /// columns.
-HWY_INLINE PixelRange texels_within(const PixelRange& columns, int step, int reach, int width) {
+HWY_INLINE PixelRange texels_within(const PixelRange& columns, int step, int extent, int width) {
   if (columns.empty()) {
     return {};
   }
   const PixelRange texels{(columns.begin + step - 1) / step,
-                          columns.end == width ? (width + step - 1) / step : (columns.end - 1 - reach + step) / step};
+                          columns.end == width ? (width + step - 1) / step : (columns.end - 1 - extent + step) / step};
   return texels.empty() ? PixelRange{} : texels;
 }
 
@@ -126,13 +126,13 @@ HWY_INLINE void clear_row(const PixelRange& old, const PixelRange& now, float va
 HWY_INLINE PixelRange island_texels(bool from_image, int j, const PyramidLevel& below,
                                     const PixelRange* below_columns) {
   const int step = from_image ? 1 : 2;
-  const int reach = from_image ? 3 : 4;
+  const int extent = from_image ? 3 : 4;
   const int first = step * j;
   PixelRange all = below_columns[first];
-  for (int row = first; row < std::min(first + reach + 1, below.height); row += from_image ? 1 : 4) {
+  for (int row = first; row < std::min(first + extent + 1, below.height); row += from_image ? 1 : 4) {
     all = common(all, below_columns[row]);
   }
-  return texels_within(all, step, reach, below.width);
+  return texels_within(all, step, extent, below.width);
 }
 
 void build_island_pyramids(PreparedImage& image, float* scratch) {

@@ -22,7 +22,7 @@ namespace depthgrid::views::HWY_NAMESPACE {
 using namespace lanes::HWY_NAMESPACE;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kLargest = std::numeric_limits<float>::max();
-constexpr int kLargestReach = 16;  ///< as validate() of SensorMargin has it
+constexpr int kMaxFilterRadius = 16;  ///< as validate() of SensorMargin has it
 
 template <class D>
 HWY_INLINE int lanes(D d) {

@@ -23,14 +23,14 @@ struct View::Preparation {
   Preparation(const RigCamera& camera_in, const CameraMargins& margins, const Policies& policies)
       : camera(camera_in),
         reading(camera.rule, camera.metres_per_unit, margins.sensor),
-        reach_px(margins.sensor.lateral_px),
+        radius_px(margins.sensor.lateral_px),
         pocket(pocket_m(policies)),
         blind_m(rounded_up(camera.rule.near_m)),
-        rows(camera.intrinsics.width_px, camera.intrinsics.height_px, reach_px) {}
+        rows(camera.intrinsics.width_px, camera.intrinsics.height_px, radius_px) {}
 
   RigCamera camera;
   Reading reading;
-  int reach_px;
+  int radius_px;
   float pocket;
   float blind_m;
   PreparationRows rows;
@@ -79,7 +79,7 @@ bool View::update(const Frame& frame, const Pose& T_world_camera) noexcept {
   if (read.robot.near_m != nullptr) {
     image.clear_islands();
   }
-  const NewImage news{read.depth, read.robot, p.reach_px, p.pocket, p.blind_m};
+  const NewImage news{read.depth, read.robot, p.radius_px, p.pocket, p.blind_m};
   image.has_islands = !prepare(p.reading, news, p.rows, image).empty();
   if (image.has_islands) {
     image.join_island_bands();

@@ -28,7 +28,7 @@ Mends first_mends(int count);
 
 class LetterModel {
  public:
-  /// `problem` must outlive the model; without robot, margins and lateral reach.
+  /// `problem` must outlive the model; without robot, margins and filter radius.
   explicit LetterModel(const reference::RandomProblem& problem);
 
   /// Distance in metres, rho where nothing was found.

@@ -55,13 +55,13 @@ Case run(const views::ViewStore& store, const std::vector<Capsule>& points, cons
   return result;
 }
 
-views::Settings settings_for(int cameras, double reach_m) {
+views::Settings settings_for(int cameras, double pose_error_m) {
   views::Settings settings;
   settings.space = views::BoxSpace{{-1.5, -1.5, 0.0}, {1.5, 1.5, 2.0}};
   settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0};
   settings.margins.resize(static_cast<std::size_t>(cameras));
   for (auto& margins : settings.margins) {
-    margins.translation_m = reach_m;
+    margins.translation_m = pose_error_m;
   }
   settings.v_max_m_s = 0;
   return settings;
@@ -97,8 +97,8 @@ void write_table() {
     for (const Scene& scene : scenes) {
       std::mt19937 generator(7);
       std::vector<std::vector<std::uint16_t>> images(static_cast<std::size_t>(cameras));
-      for (const double reach_m : {0.0, 0.02}) {
-        views::Settings settings = settings_for(cameras, reach_m);
+      for (const double pose_error_m : {0.0, 0.02}) {
+        views::Settings settings = settings_for(cameras, pose_error_m);
         for (const bool at_camera : {false, true}) {
           if (at_camera && scene.name != scenes.back().name) {
             continue;  // in the blind zone all scenes are the same
@@ -127,7 +127,7 @@ void write_table() {
           tight.nodes = 2000;
           const Case cut = run(store, points, tight);
           std::printf("| %s | %s | %d | %.0f cm | %lld%s | %.2f | %.2f | %.2f | %d of 9 | %.3f of %.3f m |\n",
-                      scene.name.c_str(), at_camera ? "on a camera" : "on the arm", cameras, 100 * reach_m,
+                      scene.name.c_str(), at_camera ? "on a camera" : "on the arm", cameras, 100 * pose_error_m,
                       static_cast<long long>(whole.cubes), whole.unfinished > 0 ? " (stopped after 1 s)" : "",
                       whole.median_ms, whole.most_ms, cut.most_ms, cut.unfinished, cut.mean_m, whole.mean_m);
           std::fflush(stdout);

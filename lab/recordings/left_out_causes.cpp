@@ -7,7 +7,7 @@ namespace depthgrid::lab {
 
 namespace {
 
-constexpr int kEdgeReach_px = 3;
+constexpr int kEdgeRadius_px = 3;
 constexpr float kEdgeStep = 0.04F;
 constexpr float kMoved_m = 0.10F;
 constexpr double kThrough_m = 0.30;
@@ -56,8 +56,8 @@ DepthImage median_image(std::span<const DepthImage> images) {
 
 bool at_edge(const DepthImage& depth, int u, int v) {
   const float centre_m = depth.at(u, v);
-  for (int j = v - kEdgeReach_px; j <= v + kEdgeReach_px; ++j) {
-    for (int i = u - kEdgeReach_px; i <= u + kEdgeReach_px; ++i) {
+  for (int j = v - kEdgeRadius_px; j <= v + kEdgeRadius_px; ++j) {
+    for (int i = u - kEdgeRadius_px; i <= u + kEdgeRadius_px; ++i) {
       if (i < 0 || j < 0 || i >= depth.width_px() || j >= depth.height_px() || !(depth.at(i, j) > 0) ||
           std::abs(depth.at(i, j) - centre_m) > kEdgeStep * centre_m) {
         return true;

@@ -74,7 +74,7 @@ void write_quicker(std::ostream& page, const Report& report) {
 }  // namespace
 
 void write_side_by_side(std::ostream& page, const Report& report) {
-  page << "## Side by side\n\n`search` is ours with a lateral reach of one pixel, its default; `search, w = 0` "
+  page << "## Side by side\n\n`search` is ours with a filter radius of one pixel, its default; `search, w = 0` "
           "without, as all "
           "others, and the reference.\n\n";
   write_table(page, report, "W", 2, "Two cameras, robot masked");

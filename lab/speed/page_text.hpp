@@ -47,7 +47,7 @@ inline constexpr const char* kMethod = R"(## How it was measured
 - The noisy variant has axial noise of 0.5 mm + 1.5 mm/m² z² (10 mm at 2.5 m), quantisation of 11 mm at
   2 m, one invalid pixel in a hundred and robot intervals padded by 10 cm; there ours runs with margins that cover the noise
   (three standard deviations and half a step) and a calibration error of 5 mm and 1 mrad, on W with an ideal sensor and a
-  lateral reach of one pixel.
+  filter radius of one pixel.
 
 - Everybody gets the same frames. Pixels that show the robot are left out of clouds, and looked through up to the robot's
   exit where shadows count. Points lie in the robot, so where something hides the robot, its volume behind counts as

@@ -21,7 +21,7 @@ struct SweepPlan {
 /// resolution errors. `kinds` are the peers that are asked.
 void sweep_points(Stage& stage, const std::vector<PeerKind>& kinds, const SweepPlan& plan, Report& report);
 void sweep_rho(Stage& stage, const std::vector<PeerKind>& kinds, const SweepPlan& plan, Report& report);
-/// The search at several resolutions, with and without a lateral reach, and the lattice at several pitches.
+/// The search at several resolutions, with and without a filter radius, and the lattice at several pitches.
 void sweep_resolution(Stage& stage, const SweepPlan& plan, Report& report);
 /// Rows of group "sweep: image": x is the number of pixels. Renders its own frames.
 void sweep_image(const std::vector<PeerKind>& kinds, const SweepPlan& plan, Report& report);

@@ -8,7 +8,7 @@ namespace depthgrid::program {
 
 namespace {
 
-constexpr int kReach_px = 4;
+constexpr int kRadius_px = 4;
 constexpr double kSlice_m = 0.5;
 constexpr std::size_t kSliceCount = 40;
 constexpr double kFarthest_m = kSlice_m * kSliceCount;
@@ -63,14 +63,14 @@ std::pair<double, double> line_above(const std::vector<std::pair<double, double>
 
 void DepthNoise::add(const DepthImage& depth) {
   slices_.resize(kSliceCount);
-  for (int v = kReach_px; v < depth.height_px() - kReach_px; ++v) {
-    for (int u = kReach_px; u < depth.width_px() - kReach_px; ++u) {
+  for (int v = kRadius_px; v < depth.height_px() - kRadius_px; ++v) {
+    for (int u = kRadius_px; u < depth.width_px() - kRadius_px; ++u) {
       const double z = depth.at(u, v);
       if (!(z > 0 && z < kFarthest_m)) {  // before the cast: not every float fits into an integer
         continue;
       }
       const auto slice = static_cast<std::size_t>(z / kSlice_m);
-      for (const auto& [du, dv] : {std::pair(kReach_px, 0), std::pair(0, kReach_px)}) {
+      for (const auto& [du, dv] : {std::pair(kRadius_px, 0), std::pair(0, kRadius_px)}) {
         const double r = residual_m(z, depth.at(u - du, v - dv), depth.at(u + du, v + dv));
         if (r >= 0) {
           slices_[slice].add(r);

@@ -47,7 +47,7 @@ std::string cameras_text(const files::Recording& recording, const RecordingInfo&
 
 /// What the rig file states; one line a camera.
 std::string margins_text(const Rig& rig) {
-  std::string text = "margins that the rig file states: m(D), lateral reach; calibration; half exposure, time stamp\n";
+  std::string text = "margins that the rig file states: m(D), filter radius; calibration; half exposure, time stamp\n";
   for (const RigCamera& camera : rig.cameras) {
     text += line("%-17s ", camera.id.c_str());
     if (!camera.margins) {

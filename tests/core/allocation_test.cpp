@@ -88,8 +88,8 @@ TEST(NoAllocation, FreeDepthUpdate) {
   std::fill_n(measured.data(), 64 * 48, 2.0F);
   const std::vector<float> near_m(64 * 48, 1.0F);
   const std::vector<float> far_m(64 * 48, 3.0F);
-  for (const int reach_px : {0, 1, 3}) {
-    FreeDepth free_depth(64, 48, {0.01, 0.0, 0.002, reach_px});
+  for (const int radius_px : {0, 1, 3}) {
+    FreeDepth free_depth(64, 48, {0.01, 0.0, 0.002, radius_px});
     const AllocationGuard guard;
     free_depth.update(measured, {});
     free_depth.update(measured, {near_m.data(), far_m.data(), 64});

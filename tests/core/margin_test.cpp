@@ -165,18 +165,18 @@ TEST(FreeDepth, IsNotRoundedUpByTheDifferenceEither) {
 }
 
 TEST(FreeDepth, BordersAndHolesReachAsFarAsTheFilter) {
-  for (const int reach_px : {1, 2, 3}) {
+  for (const int radius_px : {1, 2, 3}) {
     constexpr int kSide = 15;
     DepthImage measured(kSide, kSide);
     std::fill_n(measured.data(), kSide * kSide, 2.0F);
     measured.at(7, 7) = 0.0F;
-    FreeDepth free_depth(kSide, kSide, {0, 0, 0, reach_px});
+    FreeDepth free_depth(kSide, kSide, {0, 0, 0, radius_px});
     free_depth.update(measured, {});
     for (int v = 0; v < kSide; ++v) {
       for (int u = 0; u < kSide; ++u) {
-        const bool border = std::min({u, v, kSide - 1 - u, kSide - 1 - v}) < reach_px;
-        const bool hole = std::max(std::abs(u - 7), std::abs(v - 7)) <= reach_px;
-        EXPECT_EQ(free_depth.image().at(u, v), border || hole ? 0.0F : 2.0F) << u << ", " << v << ", w " << reach_px;
+        const bool border = std::min({u, v, kSide - 1 - u, kSide - 1 - v}) < radius_px;
+        const bool hole = std::max(std::abs(u - 7), std::abs(v - 7)) <= radius_px;
+        EXPECT_EQ(free_depth.image().at(u, v), border || hole ? 0.0F : 2.0F) << u << ", " << v << ", w " << radius_px;
       }
     }
   }
@@ -209,8 +209,8 @@ TEST(BrokenMargin, NamesValueAndRule) {
             "camera 'left': linear is nan, must be a finite number that is not negative");
   EXPECT_EQ(message(SensorMargin{0, 0, kInf, 1}),
             "camera 'left': quadratic is inf 1/m, must be a finite number that is not negative");
-  EXPECT_EQ(message(SensorMargin{0, 0, 0, 17}), "camera 'left': lateral reach is 17 px, must be between 0 and 16");
-  EXPECT_EQ(message(SensorMargin{0, 0, 0, -1}), "camera 'left': lateral reach is -1 px, must be between 0 and 16");
+  EXPECT_EQ(message(SensorMargin{0, 0, 0, 17}), "camera 'left': filter radius is 17 px, must be between 0 and 16");
+  EXPECT_EQ(message(SensorMargin{0, 0, 0, -1}), "camera 'left': filter radius is -1 px, must be between 0 and 16");
   EXPECT_EQ(message(PoseMargin{-1, 0, 0}),
             "camera 'left': translation is -1 m, must be a finite number that is not negative");
   EXPECT_EQ(message(PoseMargin{0, kInf, 0}),
@@ -219,7 +219,7 @@ TEST(BrokenMargin, NamesValueAndRule) {
             "camera 'left': time is nan m, must be a finite number that is not negative");
   EXPECT_EQ(message(CameraMargins{}), "");
   EXPECT_EQ(message(CameraMargins{{0, 0, 0, 17}, 0, 0, 0, 0}),
-            "camera 'left': lateral reach is 17 px, must be between 0 and 16");
+            "camera 'left': filter radius is 17 px, must be between 0 and 16");
   EXPECT_EQ(message(CameraMargins{{}, -1, 0, 0, 0}),
             "camera 'left': translation is -1 m, must be a finite number that is not negative");
   EXPECT_EQ(message(CameraMargins{{}, 0, kNaN, 0, 0}),
@@ -231,7 +231,7 @@ TEST(BrokenMargin, NamesValueAndRule) {
   EXPECT_EQ(test::thrown_message([] {
               FreeDepth(4, 3, {0, 0, 0, 17});
             }),
-            "sensor margin: lateral reach is 17 px, must be between 0 and 16");
+            "sensor margin: filter radius is 17 px, must be between 0 and 16");
   EXPECT_EQ(test::thrown_message([] { FreeDepth(0, 3, {}); }),
             "depth image: size is 0 x 3 px, each side must be between 1 and 16384");
 }

@@ -32,11 +32,11 @@ TEST(Classification, SurfaceShadowHoleAndNothing) {
   EXPECT_EQ(one.at({0.05, 0.05, 1.0}).state, ProximityState::unmeasured);
 }
 
-TEST(Classification, ANearerSurfaceWithinTheLateralReachIsMeasured) {
+TEST(Classification, ANearerSurfaceWithinTheFilterRadiusIsMeasured) {
   OneCamera one;
   one.fill(2.0F);
   one.depth_m.at(11, 10) = 1.5F;
-  // Seen through pixel (10, 10), whose own depth is 2 m; the reach takes its free depth from the neighbour.
+  // Seen through pixel (10, 10), whose own depth is 2 m; the filter takes its free depth from the neighbour.
   EXPECT_EQ(one.at({0.05, 0.05, 1.5}).state, ProximityState::measured);
   EXPECT_EQ(one.at({0.05, 0.05, 1.7}).state, ProximityState::occluded) << "the shadow edge is no surface";
   one.margin.lateral_px = 0;

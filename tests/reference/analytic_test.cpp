@@ -101,7 +101,7 @@ TEST(ReferenceAnalytic, OneNearPixel) {
   expect_encloses(rig.distance(p), (slope * z - 0.1) / std::hypot(1.0, slope));
   // In front of the pixel the nearest point is on its front face.
   expect_encloses(rig.distance({0.165, 0.01, 0.8}), 0.2);
-  // Without measurement the whole pyramid is an obstacle; with a lateral reach its neighbours are too.
+  // Without measurement the whole pyramid is an obstacle; with a filter radius its neighbours are too.
   rig.image(0)[24 * 64 + 40] = std::numeric_limits<float>::quiet_NaN();
   expect_encloses(rig.distance({0.08, 0.01, 0.8}), (slope * 0.8 - 0.08) / std::hypot(1.0, slope));
   rig.problem().cameras[0].sensor.lateral_px = 2;

@@ -32,7 +32,7 @@ struct Look {
   bool unmeasured = false;  ///< no reading, or beside the image's edge
 };
 
-/// What a camera measured around the place where a ball projects, with its lateral reach.
+/// What a camera measured around the place where a ball projects, with its filter radius.
 Look look(const CameraInput& input, const CameraSpace& camera, const Vector3d& p_world, double radius_m) {
   const Vector3d p = camera.to_camera(p_world);
   const PinholeCamera& c = input.camera;
@@ -202,7 +202,7 @@ std::optional<std::string> AnswerCheck::not_tight(const Primitive& primitive, co
   const double resolution_m = problem_->settings.resolution_m;
   for (std::size_t k = 0; k < oracle_->camera_count(); ++k) {
     const CameraSpace& camera = oracle_->camera(k);
-    const double radius_m = camera.reach_m(w) + resolution_m + search::kRounding;
+    const double radius_m = camera.pose_error_m(w) + resolution_m + search::kRounding;
     if (!camera.ball_meets_not_free(w, radius_m)) {
       return text("camera ", k, " frees ", radius_m, " m around the nearest point");
     }
@@ -224,7 +224,7 @@ std::optional<std::string> AnswerCheck::implausible_state(const Vector3d& w, con
   for (std::size_t k = 0; k < oracle_->camera_count(); ++k) {
     const CameraSpace& camera = oracle_->camera(k);
     const CameraInput& input = problem_->problem.cameras[k];
-    const double radius_m = camera.reach_m(w) + problem_->settings.resolution_m + search::kRounding;
+    const double radius_m = camera.pose_error_m(w) + problem_->settings.resolution_m + search::kRounding;
     covered = covered || (camera.covers(w) && problem_->present(k));
     if (!view_within(camera, 0.0, w, radius_m)) {
       continue;

@@ -201,14 +201,14 @@ bool CameraSpace::ball_meets_not_free(const Eigen::Vector3d& p_world, double rad
   return any_pixel(in_image, p.z() - radius_m, p.z() + radius_m, p, radius_m, [&](int u, int v) {
     const Depths depths = not_free_depths(u, v);
     return std::any_of(depths.begin(), depths.end(), [&](const std::array<double, 2>& d) {
-      const bool in_reach = d[0] < d[1] && d[0] <= p.z() + radius_m && d[1] >= p.z() - radius_m;
-      return in_reach && piece(u, v, d[0], d[1]).meets_ball(p, radius_m);
+      const bool may_meet = d[0] < d[1] && d[0] <= p.z() + radius_m && d[1] >= p.z() - radius_m;
+      return may_meet && piece(u, v, d[0], d[1]).meets_ball(p, radius_m);
     });
   });
 }
 
 bool CameraSpace::blocks(const Eigen::Vector3d& p_world) const {
-  return not_free(p_world) || (has_reach() && ball_meets_not_free(p_world, reach_m(p_world)));
+  return not_free(p_world) || (has_pose_error() && ball_meets_not_free(p_world, pose_error_m(p_world)));
 }
 
 std::array<Eigen::Vector3d, 8> CameraSpace::corners_in_camera(const WorldBox& box) const {

@@ -96,13 +96,15 @@ class CameraSpace {
     return R_camera_world_.transpose() * p_camera + centre_world_;
   }
   /// e at a point, metres.
-  [[nodiscard]] double reach_m(const Eigen::Vector3d& p_world) const {
-    return reach_at_range_m((p_world - centre_world_).norm());
+  [[nodiscard]] double pose_error_m(const Eigen::Vector3d& p_world) const {
+    return pose_error_at_range_m((p_world - centre_world_).norm());
   }
-  [[nodiscard]] double reach_at_range_m(double range_m) const {
+  [[nodiscard]] double pose_error_at_range_m(double range_m) const {
     return pose_.translation_m + pose_.rotation_rad * range_m + pose_.time_m;
   }
-  [[nodiscard]] bool has_reach() const { return pose_.translation_m > 0 || pose_.rotation_rad > 0 || pose_.time_m > 0; }
+  [[nodiscard]] bool has_pose_error() const {
+    return pose_.translation_m > 0 || pose_.rotation_rad > 0 || pose_.time_m > 0;
+  }
 
  private:
   static constexpr int kBlock = 16;

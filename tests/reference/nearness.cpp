@@ -11,8 +11,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoundingM = 1e-9;
 /// Boxes that project on more pixels are too large to be decided by single pixels: subdividing them is cheaper.
 constexpr int kMaxPixels = 2048;
-/// ...unless their half diagonal is this share of the reach, or less: then the reach makes them large.
-constexpr double kSmallBesideReach = 0.25;
+/// ...unless their half diagonal is this share of the pose error, or less: then the pose error makes them large.
+constexpr double kSmallBesidePoseError = 0.25;
 
 int width(const CameraSpace::PixelWindow& window) { return window.u_last - window.u_first + 1; }
 int height(const CameraSpace::PixelWindow& window) { return window.v_last - window.v_first + 1; }
@@ -23,7 +23,7 @@ Nearness::Nearness(const CameraSpace& camera, const Primitive& primitive, double
     : camera_(&camera),
       a_camera_(camera.to_camera(primitive.a_world)),
       b_camera_(camera.to_camera(primitive.b_world)),
-      enough_m_(enough_m + camera.reach_at_range_m(std::max(a_camera_.norm(), b_camera_.norm()) + enough_m)),
+      enough_m_(enough_m + camera.pose_error_at_range_m(std::max(a_camera_.norm(), b_camera_.norm()) + enough_m)),
       farthest_m_(std::max(a_camera_.z(), b_camera_.z()) + enough_m_) {
   // Beyond a border plane lies a half space: the nearer end of the axis decides.
   const std::array<double, 4> inside_a_m = camera.inside_m(a_camera_);
@@ -68,16 +68,17 @@ const Nearness::Known& Nearness::piece_distance(int u, int v, std::size_t i, con
 
 double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimits>& limits, double useless_m) {
   suspect_world_.reset();
-  // Every point that is blocked has a not free point within its reach, which lies in the grown box, and within this
-  // radius around the box's centre.
-  double reach_m = 0;
-  if (camera_->has_reach()) {
+  // Every point that is blocked has a point that is not known free within its pose error, which lies in the grown box,
+  // and within this radius around the box's centre.
+  double pose_error_m = 0;
+  if (camera_->has_pose_error()) {
     for (int i = 0; i < 8; ++i) {
-      reach_m = std::max(reach_m, camera_->reach_m(box.corner(i)));
+      pose_error_m = std::max(pose_error_m, camera_->pose_error_m(box.corner(i)));
     }
   }
-  const double radius_m = reach_m + box.half_diagonal_m() + kRoundingM;
-  const std::array<Eigen::Vector3d, 8> corners = camera_->corners_in_camera(reach_m > 0 ? box.grown(reach_m) : box);
+  const double radius_m = pose_error_m + box.half_diagonal_m() + kRoundingM;
+  const std::array<Eigen::Vector3d, 8> corners =
+      camera_->corners_in_camera(pose_error_m > 0 ? box.grown(pose_error_m) : box);
   const std::optional<CameraSpace::PixelWindow> hull = camera_->window_of(corners);
   if (!hull) {
     return 0;
@@ -92,7 +93,7 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
   const PinholeCamera& image = camera_->intrinsics();
   const Eigen::Vector3d centre = camera_->to_camera(box.centre());
   double result_m = kInfinity;
-  if (limits && reach_m == 0) {
+  if (limits && pose_error_m == 0) {
     z_low = std::max(z_low, limits->d_min_m);
     z_high = std::min(z_high, limits->d_max_m);
     if (z_low > z_high) {
@@ -104,7 +105,7 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
     const std::array<double, 4> inside_m = camera_->inside_m(centre);
     for (std::size_t i = 0; i < leaves.size(); ++i) {
       if (leaves[i] && inside_m[i] <= radius_m) {
-        result_m = std::min(result_m, border_m_[i] - reach_m);
+        result_m = std::min(result_m, border_m_[i] - pose_error_m);
       }
     }
   }
@@ -112,7 +113,7 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
             std::min(window.v_last, image.height_px - 1)};
   // Subdividing makes the window smaller only while the box is what makes it large.
   const bool many = width(window) > 0 && height(window) > 0 && width(window) * height(window) > kMaxPixels &&
-                    box.half_diagonal_m() > kSmallBesideReach * reach_m;
+                    box.half_diagonal_m() > kSmallBesidePoseError * pose_error_m;
   if (result_m <= useless_m) {
     return std::max(result_m, 0.0);
   }
@@ -128,8 +129,8 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
         return true;
       }
       const Known& known = piece_distance(u, v, i, depths[i]);
-      if (known.distance_m - reach_m < result_m && camera_->piece(u, v, d1_m, d2_m).meets_ball(centre, radius_m)) {
-        result_m = known.distance_m - reach_m;
+      if (known.distance_m - pose_error_m < result_m && camera_->piece(u, v, d1_m, d2_m).meets_ball(centre, radius_m)) {
+        result_m = known.distance_m - pose_error_m;
         // Into the pixel's middle and away from the border by less than matters.
         const Eigen::Vector3d nearest = known.nearest.cast<double>();
         const double z = nearest.z() + 1e-7;

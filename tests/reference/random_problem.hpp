@@ -47,7 +47,7 @@ struct RandomOptions {
   std::optional<double> rho_m;
   std::optional<double> step_m;  ///< depth of a cell of the depth grid
   std::optional<bool> margins;   ///< sensor and pose margins
-  std::optional<bool> lateral;   ///< lateral reach of at least one pixel; otherwise none
+  std::optional<bool> lateral;   ///< filter radius of at least one pixel; otherwise none
   std::optional<bool> invalid;   ///< some pixels without measurement
   std::optional<bool> robot;     ///< robot capsules with their masks
   std::optional<bool> units;     ///< 16-bit depth in millimetres instead of float metres

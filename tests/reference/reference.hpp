@@ -7,10 +7,10 @@
 //   O          = intersection over k of { x in W : some y in N_k minus R_k has |x - y| <= e_k(x) }
 //   D(P)       = distance from the surface of P to O, 0 where they touch, capped at rho
 //
-// P is a point, a sphere or a capsule, W the space of interest, R_k the robot as camera k sees it, e_k the reach of
-// calibration and time errors. The result is a proven interval: boxes around P are subdivided, nearest first. A box is
-// as far as the farthest that one camera alone can prove for what it blocks in it; the upper end is the distance of a
-// point that was found to lie in O.
+// P is a point, a sphere or a capsule, W the space of interest, R_k the robot as camera k sees it, e_k the pose error
+// of calibration and time errors. The result is a proven interval: boxes around P are subdivided, nearest first. A box
+// is as far as the farthest that one camera alone can prove for what it blocks in it; the upper end is the distance of
+// a point that was found to lie in O.
 //
 // Where space outside W is ignored, a primitive whose axis leaves W has no distance. Where it is an obstacle its
 // distance is 0, and otherwise at most that from its surface to W's border.

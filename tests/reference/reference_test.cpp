@@ -127,11 +127,12 @@ TEST(Reference, MembershipAgreesWithPolyhedra) {
           nearest_m = std::min(nearest_m, distance_m(piece, p_world, nearest_m));
         }
         const PoseMargin& pose = problem.cameras[k].pose;
-        const double reach_m = pose.translation_m + pose.time_m +
-                               pose.rotation_rad * (p_world - problem.cameras[k].T_world_camera.translation()).norm();
-        if (nearest_m == 0 || std::abs(nearest_m - reach_m) > 1e-8) {
-          EXPECT_EQ(reference.camera(k).blocks(p_world), nearest_m <= reach_m)
-              << "camera " << k << ", point " << p_world.transpose() << ", " << nearest_m << " of " << reach_m;
+        const double pose_error_m =
+            pose.translation_m + pose.time_m +
+            pose.rotation_rad * (p_world - problem.cameras[k].T_world_camera.translation()).norm();
+        if (nearest_m == 0 || std::abs(nearest_m - pose_error_m) > 1e-8) {
+          EXPECT_EQ(reference.camera(k).blocks(p_world), nearest_m <= pose_error_m)
+              << "camera " << k << ", point " << p_world.transpose() << ", " << nearest_m << " of " << pose_error_m;
           ++checked;
         }
       }
@@ -176,11 +177,12 @@ TEST(Reference, WitnessLiesInTheObstacleSetAndBoundsAreInOrder) {
       }
       for (std::size_t k = 0; k < problem.cameras.size(); ++k) {
         const CameraInput& camera = problem.cameras[k];
-        const double reach_m = camera.pose.translation_m + camera.pose.time_m +
-                               camera.pose.rotation_rad * (witness - camera.T_world_camera.translation()).norm();
-        EXPECT_TRUE(std::any_of(
-            pieces[k].begin(), pieces[k].end(),
-            [&](const Polyhedron& piece) { return distance_m(piece, witness, reach_m + 1e-6) <= reach_m + 1e-8; }))
+        const double pose_error_m = camera.pose.translation_m + camera.pose.time_m +
+                                    camera.pose.rotation_rad * (witness - camera.T_world_camera.translation()).norm();
+        EXPECT_TRUE(std::any_of(pieces[k].begin(), pieces[k].end(),
+                                [&](const Polyhedron& piece) {
+                                  return distance_m(piece, witness, pose_error_m + 1e-6) <= pose_error_m + 1e-8;
+                                }))
             << "camera " << k << " frees the witness of " << p_world.transpose();
       }
     }
@@ -226,12 +228,12 @@ TEST(Reference, MoreCamerasNeverLowerAndWorseImagesNeverRaise) {
     for (CameraInput& camera : wider.cameras) {
       camera.sensor.lateral_px += 1;
     }
-    never_farther(wider, "larger lateral reach");
+    never_farther(wider, "larger filter radius");
     wider = all;
     for (CameraInput& camera : wider.cameras) {
       camera.pose.time_m += 0.005;
     }
-    never_farther(wider, "larger reach");
+    never_farther(wider, "larger pose error");
 
     // Invalid pixels, in a copy of the images. Robot pixels are left out: they lose what was known behind the robot.
     std::vector<std::vector<float>> images;

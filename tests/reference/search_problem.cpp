@@ -21,12 +21,12 @@ CameraMargins draw_margins(Random& random, bool lateral) {
   margins.sensor.linear = random.chance(0.3) ? random.uniform(0, 0.003) : 0.0;
   margins.sensor.quadratic_per_m = random.uniform(0, 0.002);
   margins.sensor.lateral_px = lateral ? random.integer(0, 2) : 0;
-  // Some cameras without reach beside others with it.
-  const bool reach = random.chance(0.8);
-  margins.translation_m = random.uniform(0, reach ? 0.01 : 0.0);
-  margins.rotation_rad = random.uniform(0, reach ? 0.004 : 0.0);
-  margins.half_exposure_s = random.uniform(0, reach ? 0.008 : 0.0);
-  margins.time_uncertainty_s = random.uniform(0, reach ? 0.001 : 0.0);
+  // Some cameras without pose error beside others with it.
+  const bool with_error = random.chance(0.8);
+  margins.translation_m = random.uniform(0, with_error ? 0.01 : 0.0);
+  margins.rotation_rad = random.uniform(0, with_error ? 0.004 : 0.0);
+  margins.half_exposure_s = random.uniform(0, with_error ? 0.008 : 0.0);
+  margins.time_uncertainty_s = random.uniform(0, with_error ? 0.001 : 0.0);
   return margins;
 }
 

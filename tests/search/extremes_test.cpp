@@ -367,7 +367,7 @@ TEST(Extremes, AnImageMayHaveOnePixel) {
       expect_within_oracle(one.setup, p);
     }
     EXPECT_GT(Asker(one.setup).distance(Capsule::point({0, 0, 1.5})).nearest.distance_m, 0.3);
-    // With a reach of one pixel every pixel is at the border, so nothing is free.
+    // With a filter radius of one pixel every pixel is at the border, so nothing is free.
     one.setup.settings.margins[0].sensor.lateral_px = 1;
     EXPECT_EQ(Asker(one.setup).distance(Capsule::point({0, 0, 1.5})).nearest.distance_m, 0);
   }

@@ -47,7 +47,7 @@ double upper_m(const Interval& centre, const SearchSetup& setup, double radius_m
   return centre.hi_m ? std::max(0.0, *centre.hi_m - radius_m) : setup.settings.rho_m;
 }
 
-SearchSetup with_reach(SearchSetup setup, double more_m) {
+SearchSetup with_pose_error(SearchSetup setup, double more_m) {
   for (CameraMargins& margins : setup.settings.margins) {
     margins.translation_m += more_m;
   }
@@ -64,7 +64,7 @@ TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
   for_random_problems(100, {}, [&](const RandomProblem& problem, Random& random) {
     const SearchSetup setup = make_setup(problem, random_space(random), true);
     Asker asker(setup);
-    Asker grown(with_reach(setup, setup.settings.resolution_m));
+    Asker grown(with_pose_error(setup, setup.settings.resolution_m));
     for (const Vector3d& p_world : problem.points_world) {
       const Capsule primitive = random_primitive(random, p_world);
       const Proximity nearest = asker.distance(primitive).nearest;

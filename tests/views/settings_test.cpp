@@ -123,7 +123,7 @@ TEST(SearchSettings, ChecksTheMarginsOfEveryCamera) {
   EXPECT_EQ(refused(&CameraMargins::half_exposure_s, kInf), start + "half exposure is inf s" + rule);
   EXPECT_EQ(refused(&CameraMargins::time_uncertainty_s, -1), start + "time uncertainty is -1 s" + rule);
   EXPECT_EQ(message([](Settings& s) { s.margins[1].sensor.lateral_px = 17; }),
-            start + "lateral reach is 17 px, must be between 0 and 16");
+            start + "filter radius is 17 px, must be between 0 and 16");
 }
 
 TEST(SearchSettings, ChecksTheNumbers) {

@@ -79,9 +79,9 @@ Bounds Twin::reduced(int u, int v) const {
 /// g.
 Bounds Twin::filtered(int u, int v) const {
   Bounds result = reduced(u, v);
-  const int reach_px = margins.sensor.lateral_px;
-  for (int dv = -reach_px; dv <= reach_px; ++dv) {
-    for (int du = -reach_px; du <= reach_px; ++du) {
+  const int radius_px = margins.sensor.lateral_px;
+  for (int dv = -radius_px; dv <= radius_px; ++dv) {
+    for (int du = -radius_px; du <= radius_px; ++du) {
       const Bounds other = reduced(u + du, v + dv);
       result = {std::min(result.low_m, other.low_m), std::min(result.high_m, other.high_m)};
     }
