@@ -67,7 +67,7 @@ int run() {
   frame.depth = depthgrid::depth_view(pixels, kWidth, kHeight, camera.metres_per_unit, kStrideBytes);
   frame.time_s = 0.0;  // middle of the exposure, one clock for all cameras
   if (const depthgrid::FrameUpdate update = evaluator.update(0, frame); !update.taken()) {
-    std::printf("no usable frame, all the camera should see counts as not free: %s\n", update.reason);
+    std::printf("no usable frame, all the camera should see counts as not known free: %s\n", update.reason);
   }
 
   // 4. Any number of points on the robot, world frame.

@@ -16,8 +16,8 @@ struct SensorMargin {
 };
 
 /// Calibration and time: e(x) = translation_m + rotation_rad |x - camera centre| + time_m, where
-/// time_m = v_max (|t_k - t_ref| + half the exposure + time-stamp uncertainty). A point is freed by a camera only if
-/// the whole ball of radius e around it is free in that camera.
+/// time_m = v_max (|t_k - t_ref| + half the exposure + time-stamp uncertainty). A point is known free to a camera only
+/// if the whole ball of radius e around it is free in that camera.
 struct PoseMargin {
   double translation_m = 0.0;
   double rotation_rad = 0.0;

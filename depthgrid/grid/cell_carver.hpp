@@ -11,13 +11,13 @@
 
 namespace depthgrid::grid {
 
-/// A camera that may free cells. A cell is freed only if the cell, grown by the largest pose margin e in it, lies
+/// A camera that may free cells. A cell is known free only if the cell, grown by the largest pose margin e in it, lies
 /// wholly in front of the blind zone and inside the image, and the smallest free depth over every pixel that its
 /// projection may touch lies behind the grown cell. (The letter compares one pixel's depth with the cell's smallest
 /// depth instead, so a cell that holds the surface itself counts as free and thin things vanish.)
 class CellCarver {
  public:
-  /// `T_camera_principal` maps the principal camera's frame to this camera's. near_m: nothing nearer is freed.
+  /// `T_camera_principal` maps the principal camera's frame to this camera's. near_m: nothing nearer is known free.
   CellCarver(const PinholeCamera& camera, const Pose& T_camera_principal, double near_m, const PoseMargin& margin);
 
   /// The four edges of one principal pixel's pyramid in this camera's frame: a corner at principal depth d lies at

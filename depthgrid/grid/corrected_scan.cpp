@@ -76,7 +76,7 @@ bool CorrectedScan::nearest_obstacle(Column& column, double d1_m, double d2_m, N
     const int n = take_up ? up : down;
     const PixelFrustum part = cell(n);
     ++count_.cells;
-    if (!freed(column, part.d1_m, part.d2_m)) {
+    if (!known_free(column, part.d1_m, part.d2_m)) {
       nearest = nearest_point(part, point_.p_camera);
       return nearest.distance_m < bound;
     }
@@ -89,7 +89,7 @@ bool CorrectedScan::nearest_obstacle(Column& column, double d1_m, double d2_m, N
   return false;
 }
 
-bool CorrectedScan::freed(Column& column, double d1_m, double d2_m) noexcept {
+bool CorrectedScan::known_free(Column& column, double d1_m, double d2_m) noexcept {
   if (!column.has_edges) {
     for (std::size_t k = 0; k < cameras_.size(); ++k) {
       column.edges[k] = cameras_[k].carver->edges(column.pixel);

@@ -53,7 +53,7 @@ class CorrectedScan {
   }
   /// Nearest cell between the depths d1_m and d2_m that no camera frees; true and `nearest` when within the bound.
   bool nearest_obstacle(Column& column, double d1_m, double d2_m, NearestPoint& nearest) noexcept;
-  bool freed(Column& column, double d1_m, double d2_m) noexcept;
+  bool known_free(Column& column, double d1_m, double d2_m) noexcept;
 
   const DepthGrid& grid_;
   const DepthImage& principal_free_m_;

@@ -59,7 +59,7 @@ class RobotModel {
   [[nodiscard]] std::size_t link_index(std::string_view link) const;
 
   /// Poses of all links. q: one position a joint, rad or m, limits not enforced; T_world_link: one a link. False, and
-  /// nothing written, when a size is wrong; numbers that are none give poses that are none.
+  /// nothing written, when a size is wrong; NaN in gives NaN out.
   [[nodiscard]] bool link_poses(std::span<const double> q, const Pose& T_world_base,
                                 std::span<Pose> T_world_link) const noexcept;
 

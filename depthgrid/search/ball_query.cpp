@@ -38,7 +38,7 @@ struct Ball {
     return squared_distance(frustum, p) <= squared_radius;
   }
 
-  /// The two parts of a pixel's frustum that are not free, each less the robot's island.
+  /// The two parts of a pixel's frustum that are not known free, each less the robot's island.
   [[nodiscard]] bool meets_pixel(int u, int v) const noexcept {
     const views::PreparedImage& image = *camera.image;
     const auto free_m = static_cast<double>(image.free_m.at(u, v));
@@ -57,7 +57,7 @@ struct Ball {
                                   (far_m < camera.near_m && meets(pixel, far_m, camera.near_m))));
   }
 
-  /// Whether the ball meets the not-free part of a block of 2^level pixels a side.
+  /// Whether the ball meets the not known free part of a block of 2^level pixels a side.
   [[nodiscard]] bool meets_block(int level, int i, int j, const Window& window) const noexcept {
     const Window block{std::max(i << level, window.u0), std::max(j << level, window.v0),
                        std::min(((i + 1) << level) - 1, window.u1), std::min(((j + 1) << level) - 1, window.v1)};
@@ -139,8 +139,8 @@ bool leaves_view(const PinholeCamera& c, const Eigen::Vector3d& p, double radius
 
 }  // namespace
 
-bool meets_not_free(const LocalCamera& camera, const Clip& clip, const Eigen::Vector3d& p_camera,
-                    double radius_m) noexcept {
+bool meets_not_known_free(const LocalCamera& camera, const Clip& clip, const Eigen::Vector3d& p_camera,
+                          double radius_m) noexcept {
   radius_m += kGuard;
   if (!clip.to_view && leaves_view(camera.pinhole, p_camera, radius_m)) {
     return true;

@@ -76,8 +76,8 @@ struct Depths {
   const float* island_far_m;
 };
 
-/// Lanes in which the ball may meet what is not free. Indices into the row's depths: at `index` if strided, else from
-/// `index` of the first lane on.
+/// Lanes in which the ball may meet what is not known free. Indices into the row's depths: at `index` if strided, else
+/// from `index` of the first lane on.
 template <bool kStrided>
 HWY_INLINE M may_meet(const Sides& columns, std::size_t column, const Sides& rows, std::size_t row, V square_radius,
                       const Depths& depths, I index) {

@@ -23,9 +23,9 @@ inline constexpr int kMaxScanned = 256;
 /// Whether scan() takes this window in this camera's image.
 [[nodiscard]] bool can_scan(const LocalCamera& camera, const Window& window) noexcept;
 
-/// Asks meets(context, u, v) about every pixel whose not-free depths the ball may meet, in no certain order, until one
-/// answers true. Returns whether one did. The ball has to lie beyond the camera's blind zone. Which pixels are asked
-/// about is up to the instruction set; the answer is not if meets() is exact.
+/// Asks meets(context, u, v) about every pixel whose not known free depths the ball may meet, in no certain order,
+/// until one answers true. Returns whether one did. The ball has to lie beyond the camera's blind zone. Which pixels
+/// are asked about is up to the instruction set; the answer is not if meets() is exact.
 [[nodiscard]] bool scan(const LocalCamera& camera, const ScannedBall& ball,
                         bool (*meets)(const void* context, int u, int v), const void* context) noexcept;
 

@@ -45,7 +45,7 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
     if (z_m < free_m) {
       return false;
     }
-    // What is not free begins at free_m, or where x lies beyond that; in the robot's island it is the robot.
+    // What is not known free begins at free_m, or where x lies beyond that; in the robot's island it is the robot.
     return !is_robot(i, j, std::max(free_m, x.z()));
   };
   return reaches(u, v, 0) || reaches(part_u < 0.5 ? u - 1 : u + 1, v, std::min(part_u, 1 - part_u) * x.z() / c.fx_px) ||

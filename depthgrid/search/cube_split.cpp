@@ -10,7 +10,7 @@
 #define HWY_TARGET_INCLUDE "depthgrid/search/cube_split.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target: they must be seen once for each target.
-#include "depthgrid/search/freed-inl.hpp"
+#include "depthgrid/search/known_free-inl.hpp"
 #include "depthgrid/search/proximities-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,7 +44,7 @@ HWY_INLINE M outside_view(const CubeQuery& query, const LocalCamera& camera, con
 }
 
 /// Lanes of `open` that stay open after every camera has been asked.
-HWY_INLINE M not_freed(CubeQuery& query, std::span<const Cube> parents, float half_m, const Boxes& boxes, M open) {
+HWY_INLINE M not_known_free(CubeQuery& query, std::span<const Cube> parents, float half_m, const Boxes& boxes, M open) {
   const Floats d;
   const V zero = hn::Zero(d);
   M uncovered = query.uncovered_ignored ? open : hn::Lt(zero, zero);
@@ -53,7 +53,7 @@ HWY_INLINE M not_freed(CubeQuery& query, std::span<const Cube> parents, float ha
     const LocalCamera& camera = query.cameras[k];
     const Bounds bounds = bounds_in(camera, boxes);
     const PixelBounds pixels = pixel_bounds(camera, parents, half_m);
-    M gone = freed_whole(camera, open, bounds, pixels);
+    M gone = known_free_whole(camera, open, bounds, pixels);
     // W and what a camera covers have nothing to do with its pose error.
     const bool plain = query.principal == static_cast<int>(k) || query.uncovered_ignored;
     const Bounds own = plain && camera.has_pose_error ? bounds_in(camera, boxes, false) : bounds;
@@ -61,10 +61,10 @@ HWY_INLINE M not_freed(CubeQuery& query, std::span<const Cube> parents, float ha
       gone = hn::Or(gone, outside_view(query, camera, own));
     }
     if (camera.space.to_view) {
-      gone = hn::Or(gone, freed_in_view(camera, camera.space, bounds, pixels));
+      gone = hn::Or(gone, known_free_in_view(camera, camera.space, bounds, pixels));
     }
     if (query.uncovered_ignored) {
-      uncovered = hn::And(uncovered, freed_in_view(camera, camera.coverage, own, pixels));
+      uncovered = hn::And(uncovered, known_free_in_view(camera, camera.coverage, own, pixels));
     }
     open = hn::AndNot(gone, open);
     if (hn::AllFalse(d, open)) {
@@ -97,7 +97,7 @@ HWY_INLINE M cut_to_space(const CubeQuery& query, Boxes& boxes) {
   return inside;
 }
 
-/// Lanes of `open` whose point nearest to the axis seems to lie at or near not-free space in every camera.
+/// Lanes of `open` whose point nearest to the axis seems to lie at or near not known free space in every camera.
 HWY_INLINE std::uint32_t tight_witness(const CubeQuery& query, const Axis& axis, const Boxes& boxes,
                                        std::uint32_t lanes) {
   const Proximities near = proximities(axis, boxes);
@@ -160,7 +160,7 @@ void split_lanes(CubeQuery& query, const Cube* parents, int parent_count, float 
     if (hn::AllFalse(d, open)) {
       continue;
     }
-    open = not_freed(query, {parents, static_cast<std::size_t>(parent_count)}, half_m, boxes, open);
+    open = not_known_free(query, {parents, static_cast<std::size_t>(parent_count)}, half_m, boxes, open);
     // Lanes of the parents that there are, and of each primitive those whose parent asks for it.
     const std::uint32_t open_bits = bits_of(open) & ((0xFFU | second_lanes) >> first);
     if (open_bits == 0) {

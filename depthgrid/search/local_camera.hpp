@@ -52,7 +52,7 @@ struct LocalCamera {
   bool has_pose_error = false;
   bool has_islands = false;
   /// What counts at all: the view between two depths where that is W. Only without pose error: with it a point near the
-  /// border of the view is not free, whatever counts beyond the border.
+  /// border of the view is not known free, whatever counts beyond the border.
   Clip space;
   /// What the camera covers, as far as it counts.
   Clip coverage;

@@ -36,9 +36,9 @@ OctreeSearch::OctreeSearch(const views::Snapshot& snapshot, CubeQuery& query, Fr
     least_pose_error_m_ = std::min(least_pose_error_m_, pose_error_m);
     largest_rate_ = std::max(largest_rate_, e.rotation_rad);
   }
-  // The last word on a leaf is a ball's: one that no camera frees has not-free space within its diagonal and pose error
-  // of each of its points. e_k varies by less than rate * diagonal within a cube. With a rate of half a turn and more a
-  // camera frees nothing anyway: no reason for ever smaller leaves.
+  // The last word on a leaf is a ball's: one that is known free to no camera has not known free space within its
+  // diagonal and pose error of each of its points. e_k varies by less than rate * diagonal within a cube. With a rate
+  // of half a turn and more a camera frees nothing anyway: no reason for ever smaller leaves.
   const double leaf_diagonal_m = (settings_.resolution_m - 2e-5) / (1 + std::min(largest_rate_, kLargestRate));
   leaf_half_m_ = leaf_diagonal_m / (2 * kSqrt3);
 }
@@ -125,7 +125,7 @@ bool OctreeSearch::in_space(const Eigen::Vector3d& x_local) const noexcept {
   return x.z() > 0 && x.z() >= frustum.d_min_m && x.z() <= frustum.d_max_m && projects_inside(camera.pinhole, x);
 }
 
-/// Every camera has x in its not-free set, or nearly so along the ray, and x counts.
+/// Every camera has x in its not known free set, or nearly so along the ray, and x counts.
 bool OctreeSearch::is_blocked(const Eigen::Vector3d& x_local, double slack_m) const noexcept {
   bool covered = !query_.uncovered_ignored;
   for (std::size_t n = 0; n < query_.camera_count; ++n) {
@@ -141,7 +141,7 @@ bool OctreeSearch::is_blocked(const Eigen::Vector3d& x_local, double slack_m) co
   return covered && in_space(x_local);
 }
 
-/// Some camera frees the ball around the cube with all its pose error; or all that is covered of the ball is free.
+/// The ball around the cube with all its pose error is known free to some camera; or all that is covered of it is.
 bool OctreeSearch::is_free(const Cube& cube) noexcept {
   const Box box = box_of(cube);
   const Eigen::Vector3d centre = 0.5 * (box.low + box.high);
@@ -151,15 +151,16 @@ bool OctreeSearch::is_free(const Cube& cube) noexcept {
     const LocalCamera& camera = query_.cameras[query_.order[n]];
     const Eigen::Vector3d c = camera.to_camera(centre);
     const double pose_error_m = camera.has_pose_error ? camera.pose_error(c) + largest_rate_ * half_diagonal_m : 0.0;
-    // Most balls that meet not-free space do so in one of the pixels nearest to their centre.
+    // Most balls that meet not known free space do so in one of the pixels nearest to their centre.
     if (camera.space.to_view || !blocks(camera, centre, half_diagonal_m)) {
       ++count_.ball_tests;
-      if (!meets_not_free(camera, camera.space, c, half_diagonal_m + pose_error_m)) {
+      if (!meets_not_known_free(camera, camera.space, c, half_diagonal_m + pose_error_m)) {
         return true;
       }
     }
-    uncovered = uncovered && (camera.has_pose_error ? !covers_some(camera, c, half_diagonal_m)
-                                                    : !meets_not_free(camera, camera.coverage, c, half_diagonal_m));
+    uncovered =
+        uncovered && (camera.has_pose_error ? !covers_some(camera, c, half_diagonal_m)
+                                            : !meets_not_known_free(camera, camera.coverage, c, half_diagonal_m));
   }
   return uncovered;
 }

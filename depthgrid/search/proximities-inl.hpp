@@ -57,10 +57,11 @@ HWY_INLINE Proximities proximities(const Axis& axis, const Boxes& boxes) {
   return result;
 }
 
-/// Lanes around whose point a camera may have not-free space within slack and pose error: the point lies out of its
-/// view, or its pixel or one of the three nearest to it begins to be not free near enough. With t the tangent of the
-/// angle between ray and optical axis, c its cosine and s the lateral distance to the pixel, a depth h beyond the point
-/// is near enough on the worst side if (s + t h)^2 + h^2 <= slack^2, which is h <= c sqrt(slack^2 - s^2 c^2) - s t c^2.
+/// Lanes around whose point a camera may have not known free space within slack and pose error: the point lies out of
+/// its view, or its pixel or one of the three nearest to it begins to be not known free near enough. With t the tangent
+/// of the angle between ray and optical axis, c its cosine and s the lateral distance to the pixel, a depth h beyond
+/// the point is near enough on the worst side if (s + t h)^2 + h^2 <= slack^2, which is h <= c sqrt(slack^2 - s^2 c^2)
+/// - s t c^2.
 HWY_INLINE M touches(const LocalCamera& camera, V x_local, V y_local, V z_local, float slack_m) {
   const Floats d;
   const Ints di;

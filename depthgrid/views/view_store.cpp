@@ -101,7 +101,7 @@ struct ViewStore::State {
     return cameras[camera].views[slot_of(newest.load(), camera)];
   }
 
-  /// With a pose that is none the camera stays where it was.
+  /// With a pose that is not a rigid transform the camera stays where it was.
   FrameUpdate update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
     const std::size_t slot = free_slot(camera);
     std::vector<View>& views = cameras[camera].views;

@@ -52,7 +52,7 @@ double WindowScanPeer::one_camera_m(const Camera& camera, const Eigen::Vector3d&
   const PinholeCamera& intrinsics = camera.source.intrinsics;
   double bound_m = rho_m_;
   if (combine_ == Combine::maximum) {
-    // What lies outside the image is not free either: only then is each camera's distance a bound of the whole.
+    // What lies outside the image is not known free either: only then is each camera's distance a bound of the whole.
     bound_m = std::min(bound_m, border_distance_m(intrinsics, p));
   }
   const grid::PixelWindow window = grid::sphere_window(intrinsics, p, bound_m);

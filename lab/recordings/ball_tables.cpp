@@ -155,15 +155,16 @@ std::string ball_tables(const BallStudy& study, const Rig& rig) {
   std::ostringstream out;
   error_table(study, rig.cameras.size(), out);
   out << "\n### Gray area\n\n"
-         "| principal | others | grid in the workspace | gray | freed, letter's test | freed, whole cell seen free |\n"
+         "| principal | others | grid in the workspace | gray | known free, letter's test | known free, whole cell "
+         "seen free |\n"
          "|---|---|---|---|---|---|\n";
   for (const auto& [set, area] : study.gray) {
     const auto frames = static_cast<double>(study.frames);
     out << "| " << rig.cameras[set.front()].id << " | " << names(rig, set, 1) << " | "
         << report::fixed(area.workspace_m3 / frames, 2) << " m^3 | "
         << report::percent_of(area.gray_m3, area.workspace_m3) << " | "
-        << report::percent_of(area.freed_letter_m3, area.gray_m3) << " | "
-        << report::percent_of(area.freed_corrected_m3, area.gray_m3) << " |\n";
+        << report::percent_of(area.known_free_letter_m3, area.gray_m3) << " | "
+        << report::percent_of(area.known_free_corrected_m3, area.gray_m3) << " |\n";
   }
   out << "\n### Shadow obstacles\n\n";
   shadow_table(study, rig, out);

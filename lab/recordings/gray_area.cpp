@@ -58,15 +58,15 @@ void add_gray_area(const Rig& rig, const CameraSet& cameras, std::span<const Fra
         }
         area.gray_m3 += volume_m3;
         bool denied = false;
-        bool freed = false;
+        bool known_free = false;
         for (std::size_t i = 1; i < cameras.size(); ++i) {
           denied = denied ||
                    map.ray(u, v, i - 1).confirm(n, observations[i].measured_m().data()) == grid::Confirmation::denied;
-          freed = freed ||
-                  carvers[i].frees(carvers[i].edges(depth_grid.cell(u, v, n)), d1_m, d2_m, observations[i].free_m());
+          known_free = known_free || carvers[i].frees(carvers[i].edges(depth_grid.cell(u, v, n)), d1_m, d2_m,
+                                                      observations[i].free_m());
         }
-        area.freed_letter_m3 += denied ? volume_m3 : 0;
-        area.freed_corrected_m3 += freed ? volume_m3 : 0;
+        area.known_free_letter_m3 += denied ? volume_m3 : 0;
+        area.known_free_corrected_m3 += known_free ? volume_m3 : 0;
       }
     }
   }

@@ -100,7 +100,8 @@ std::string kitchen_tables() {
           << report::percent_of(static_cast<double>(row.above), all) << ") |\n";
     }
   }
-  out << "\n| principal | other cameras | grid in the workspace | gray | freed, letter's test | freed, whole cell seen "
+  out << "\n| principal | other cameras | grid in the workspace | gray | known free, letter's test | known free, whole "
+         "cell seen "
          "free |\n|---|---|---|---|---|---|\n";
   for (std::size_t principal = 0; principal < rig.cameras.size(); ++principal) {
     for (const CameraSet& set : camera_sets(rig.cameras.size(), principal)) {
@@ -112,8 +113,8 @@ std::string kitchen_tables() {
       add_gray_area(rig, set, images, cells, workspace, area);
       out << "| " << rig.cameras[principal].id << " | all three | " << report::fixed(area.workspace_m3, 2) << " m^3 | "
           << report::percent_of(area.gray_m3, area.workspace_m3) << " | "
-          << report::percent_of(area.freed_letter_m3, area.gray_m3) << " | "
-          << report::percent_of(area.freed_corrected_m3, area.gray_m3) << " |\n";
+          << report::percent_of(area.known_free_letter_m3, area.gray_m3) << " | "
+          << report::percent_of(area.known_free_corrected_m3, area.gray_m3) << " |\n";
     }
   }
   return out.str();

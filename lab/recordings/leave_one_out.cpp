@@ -44,9 +44,9 @@ bool look(const views::Snapshot& snapshot, LeftOutReading& reading) {
     const double beyond_m = static_cast<double>(snapshot.view(k).free_m(u, v)) - p_camera.z();
     if (beyond_m > most_m) {
       most_m = beyond_m;
-      reading.freed_by = static_cast<int>(k);
-      reading.freed_u = u;
-      reading.freed_v = v;
+      reading.known_free_by = static_cast<int>(k);
+      reading.known_free_u = u;
+      reading.known_free_v = v;
       reading.gap_m = static_cast<double>(snapshot.view(k).measured_m(u, v)) - p_camera.z();
     }
   }

@@ -28,9 +28,9 @@ struct LeftOutReading {
   double allowance_m = 0;  ///< see allowance_m()
   /// The camera that reports p_world free by most (slot), its pixel there and how far it measures beyond p_world; -1
   /// where none does, so that the answer is small.
-  int freed_by = -1;
-  int freed_u = 0;
-  int freed_v = 0;
+  int known_free_by = -1;
+  int known_free_u = 0;
+  int known_free_v = 0;
   double gap_m = 0;
   /// The others' distance at the point kProbe_m before the reading on its ray, where the left-out camera sees free
   /// space.

@@ -76,7 +76,7 @@ LeftOutCause cause_of(const LeftOutReading& reading, const DepthImage& left_out,
   if (at_edge(left_out, reading.u, reading.v)) {
     return LeftOutCause::own_edge;
   }
-  if (at_edge(freeing, reading.freed_u, reading.freed_v)) {
+  if (at_edge(freeing, reading.known_free_u, reading.known_free_v)) {
     return LeftOutCause::freeing_edge;
   }
   return reading.gap_m >= kThrough_m ? LeftOutCause::background_seen : LeftOutCause::offset;

@@ -46,8 +46,8 @@ struct LeftOutFigures {
   std::size_t on_floor = 0;        ///< of the violations, those within 10 cm of the floor's height
   std::size_t edge_readings = 0;   ///< all readings at an edge of their own image, to compare shares with
   std::array<std::size_t, kLeftOutCauses> causes{};
-  std::map<std::string, std::size_t> freed_by;  ///< violations by the id of the camera that frees them by most
-  std::vector<double> excesses_m;               ///< answer - allowance of the violations
+  std::map<std::string, std::size_t> known_free_by;  ///< violations by the id of the camera that frees them by most
+  std::vector<double> excesses_m;                    ///< answer - allowance of the violations
 };
 
 }  // namespace depthgrid::lab

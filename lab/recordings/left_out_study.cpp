@@ -87,14 +87,14 @@ void check_left_out(LeaveOneOut& others, const LeftOutImage& image, int stride, 
     if (!reading.violates()) {
       continue;
     }
-    if (reading.freed_by < 0) {
+    if (reading.known_free_by < 0) {
       fail("a point that no camera frees has the distance ", reading.answer_m, " m; it is an obstacle, so must have 0");
     }
-    const auto slot = static_cast<std::size_t>(reading.freed_by);
+    const auto slot = static_cast<std::size_t>(reading.known_free_by);
     const LeftOutCause cause = cause_of(reading, image.depth, image.median, freeing[slot]);
     ++figures.violations;
     ++figures.causes.at(static_cast<std::size_t>(cause));
-    ++figures.freed_by[others.id(slot)];
+    ++figures.known_free_by[others.id(slot)];
     figures.on_floor += std::abs((image.T_floor_world * reading.p_world).z()) < kFloor_m ? 1 : 0;
     figures.excesses_m.push_back(reading.answer_m - reading.allowance_m);
     figures.far_violations += figures.excesses_m.back() > kFar_m ? 1 : 0;

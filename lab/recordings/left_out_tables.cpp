@@ -12,9 +12,9 @@ std::string excess(const LeftOutFigures& f, double q) {
   return f.excesses_m.empty() ? "-" : report::fixed(1e3 * report::quantile(f.excesses_m, q)) + " mm";
 }
 
-std::string freed_by(const LeftOutFigures& f) {
+std::string known_free_by(const LeftOutFigures& f) {
   std::string text;
-  for (const auto& [id, count] : f.freed_by) {
+  for (const auto& [id, count] : f.known_free_by) {
     text += (text.empty() ? "" : ", ") + id + ' ' + std::to_string(count);
   }
   return text.empty() ? "-" : text;
@@ -39,7 +39,7 @@ std::string left_out_tables(const std::vector<LeftOutRow>& rows) {
   for (std::size_t i = 0; i < kLeftOutCauses; ++i) {
     out << ' ' << to_string(static_cast<LeftOutCause>(i)) << " |";
   }
-  out << " of all readings, at an edge | on the floor | freed by |\n|---|---|---|---|---|";
+  out << " of all readings, at an edge | on the floor | known free by |\n|---|---|---|---|---|";
   for (std::size_t i = 0; i <= kLeftOutCauses; ++i) {
     out << "---|";
   }
@@ -52,7 +52,7 @@ std::string left_out_tables(const std::vector<LeftOutRow>& rows) {
     }
     out << ' ' << report::percent_of(static_cast<double>(f.edge_readings), static_cast<double>(f.readings)) << " | "
         << report::percent_of(static_cast<double>(f.on_floor), static_cast<double>(f.violations)) << " | "
-        << freed_by(f) << " |\n";
+        << known_free_by(f) << " |\n";
   }
   return out.str();
 }

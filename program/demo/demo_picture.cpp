@@ -26,7 +26,7 @@ constexpr double kTextSize = 16;
 
 constexpr Colour kOutside{0.87, 0.91, 0.96};
 constexpr Colour kGray{0.60, 0.60, 0.62};
-constexpr Colour kFreedByOther{0.78, 0.92, 0.78};
+constexpr Colour kKnownFreeByOther{0.78, 0.92, 0.78};
 constexpr Colour kObstacle{0.80, 0.36, 0.10};
 constexpr Colour kRobot{0.35, 0.33, 0.62};
 constexpr Colour kShadowAnswer{0.84, 0.08, 0.30};
@@ -101,7 +101,7 @@ report::Raster slice_raster(const simulation::DemoScene& demo, const Rig& rig, s
           colour = report::kWhite;
           break;
         case Sight::free_for_other:
-          colour = kFreedByOther;
+          colour = kKnownFreeByOther;
           break;
         case Sight::gray:
           break;
@@ -157,7 +157,7 @@ void draw_key(Canvas& canvas, double y_px) {
   };
   constexpr std::array<Entry, 8> kEntries{{
       {"gray area", kGray, false},
-      {"freed by camera 2", kFreedByOther, false},
+      {"known free to camera 2", kKnownFreeByOther, false},
       {"outside camera 1's view", kOutside, false},
       {"person", kObstacle, false},
       {"arm", kRobot, false},

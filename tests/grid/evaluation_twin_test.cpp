@@ -128,13 +128,13 @@ double corrected_twin(const RandomProblem& problem, const DepthGrid& grid, const
             continue;
           }
         }
-        bool freed = false;
-        for (std::size_t k = 0; k < cameras.size() && !freed; ++k) {
+        bool known_free = false;
+        for (std::size_t k = 0; k < cameras.size() && !known_free; ++k) {
           if (k != problem.principal || margin) {
-            freed = carvers[k].frees(carvers[k].edges(cell), cell.d1_m, cell.d2_m, observations[k].free_m());
+            known_free = carvers[k].frees(carvers[k].edges(cell), cell.d1_m, cell.d2_m, observations[k].free_m());
           }
         }
-        if (!freed) {
+        if (!known_free) {
           best_m = std::min(best_m, nearest_point(cell, p_camera).distance_m);
         }
       }

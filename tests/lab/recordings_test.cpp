@@ -59,8 +59,8 @@ TEST_F(Kinect3Ball, DistancesAgreeWithTheBall) {
     }
   }
   for (const auto& [set, area] : study.gray) {
-    EXPECT_GT(area.freed_letter_m3, 0.1 * area.gray_m3);
-    EXPECT_LE(area.freed_corrected_m3, area.freed_letter_m3);
+    EXPECT_GT(area.known_free_letter_m3, 0.1 * area.gray_m3);
+    EXPECT_LE(area.known_free_corrected_m3, area.known_free_letter_m3);
   }
 }
 

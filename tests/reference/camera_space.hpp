@@ -22,7 +22,7 @@ namespace depthgrid::reference {
 struct CameraInput {
   PinholeCamera camera;
   Pose T_world_camera = Pose::Identity();
-  MeasurementRule rule;  ///< near_m is also the blind zone: nothing nearer is freed
+  MeasurementRule rule;  ///< near_m is also the blind zone: nothing nearer is known free
   Frame frame;
   SensorMargin sensor;
   PoseMargin pose;
@@ -38,7 +38,7 @@ class CameraSpace {
  public:
   explicit CameraSpace(const CameraInput& input);
 
-  /// x is not free and not the robot: x in N_k minus R_k, N_k = complement of { x projects inside the image and
+  /// x is not known free and not the robot: x in N_k minus R_k, N_k = complement of { x projects inside the image and
   /// near_k < z < g_k(pixel of x) }.
   [[nodiscard]] bool not_free(const Eigen::Vector3d& p_world) const;
 
@@ -72,11 +72,11 @@ class CameraSpace {
   /// Up to four depth intervals [near, far] of one pixel, far may be infinite; those with near >= far hold nothing.
   using Depths = std::array<std::array<double, 2>, 4>;
 
-  /// The depths z > 0 of a pixel of the image that are not free and not the robot.
+  /// The depths z > 0 of a pixel of the image that are not known free and not the robot.
   [[nodiscard]] Depths not_free_depths(int u, int v) const;
   /// Asks visit(u, v) about the window's pixels until it says true, and returns that. Leaves out pixels whose pyramids
-  /// have nothing not free between the depths z_low_m and z_high_m or whose not free part is farther than radius_m from
-  /// p_camera, but not all of them: whole blocks are passed over. The window lies in the image.
+  /// have nothing not known free between the depths z_low_m and z_high_m or whose not known free part is farther than
+  /// radius_m from p_camera, but not all of them: whole blocks are passed over. The window lies in the image.
   template <class Visit>
   [[nodiscard]] bool any_pixel(const PixelWindow& window, double z_low_m, double z_high_m,
                                const Eigen::Vector3d& p_camera, double radius_m, const Visit& visit) const;
@@ -109,7 +109,7 @@ class CameraSpace {
  private:
   static constexpr int kBlock = 16;
   void note_first_depths();
-  /// Whether the block may hold something not free between the depths and within the radius.
+  /// Whether the block may hold something not known free between the depths and within the radius.
   [[nodiscard]] bool block_matters(int i, int j, double z_low_m, double z_high_m, const Eigen::Vector3d& p_camera,
                                    double radius_m) const;
   /// The same of a strip, by the depths alone.
@@ -136,8 +136,8 @@ class CameraSpace {
   std::array<double, 4> border_slopes_{};
   std::array<double, 4> border_scales_{};
   std::vector<Pixel> pixels_;
-  /// Least depth beyond the blind zone that is not free and not the robot, row by row: of kBlock pixels side by side,
-  /// and of kBlock such strips below each other.
+  /// Least depth beyond the blind zone that is not known free and not the robot, row by row: of kBlock pixels side by
+  /// side, and of kBlock such strips below each other.
   std::vector<double> strips_m_, blocks_m_;
   int blocks_a_row_ = 0;
 };

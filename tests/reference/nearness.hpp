@@ -32,7 +32,7 @@ class Nearness {
     Eigen::Vector3f nearest = Eigen::Vector3f::Zero();  ///< of the piece, camera frame; only a suspect
   };
 
-  /// From the axis to the i-th not free piece of a pixel; a lower bound.
+  /// From the axis to the i-th not known free piece of a pixel; a lower bound.
   const Known& piece_distance(int u, int v, std::size_t i, const std::array<double, 2>& depths);
 
   const CameraSpace* camera_;

@@ -1,5 +1,5 @@
-// A ball meets what one camera has not seen free exactly if it meets the not-free part of one of its pixels, whatever
-// vectors, blocks and windows the pixels are looked for with.
+// A ball meets what one camera has not seen free exactly if it meets the not known free part of one of its pixels,
+// whatever vectors, blocks and windows the pixels are looked for with.
 #include "depthgrid/search/ball_scan.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 using reference::Random;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// What meets_not_free() is exact to.
+/// What meets_not_known_free() is exact to.
 constexpr double kExactM = 3e-9;
 
 /// One camera at the origin with walls, thin things before them, and a robot that is not seen where it is.
@@ -87,7 +87,7 @@ class Scene {
   [[nodiscard]] const LocalCamera& local() const { return local_; }
   [[nodiscard]] const PinholeCamera& pinhole() const { return camera_.intrinsics; }
 
-  /// The depths of a pixel that are not free, each part closed.
+  /// The depths of a pixel that are not known free, each part closed.
   [[nodiscard]] std::vector<std::array<double, 2>> not_free(int u, int v) const {
     const views::PreparedImage& image = views::prepared(snapshot_->view(0));
     const double blind_m = camera_.rule.near_m;
@@ -113,7 +113,7 @@ class Scene {
     return rest;
   }
 
-  /// How far from a point the nearest not-free part of any pixel is.
+  /// How far from a point the nearest not known free part of any pixel is.
   [[nodiscard]] double distance_m(const Vector3d& p) const {
     double square = kInfinity;
     for (int v = 0; v < pinhole().height_px; ++v) {
@@ -155,7 +155,7 @@ class Scene {
 struct BallCase {
   Vector3d p;
   double radius_m;
-  double distance_m;  ///< of the centre from what is not free
+  double distance_m;  ///< of the centre from what is not known free
 };
 
 std::vector<BallCase> random_balls(const Scene& scene, Random& random) {
@@ -193,7 +193,7 @@ TEST(Balls, MeetWhatOneOfThePixelsHasNotFree) {
       hwy::SetSupportedTargetsForTest(target);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());
       for (const BallCase& ball : balls) {
-        const bool answer = meets_not_free(scene.local(), clip, ball.p, ball.radius_m);
+        const bool answer = meets_not_known_free(scene.local(), clip, ball.p, ball.radius_m);
         EXPECT_TRUE(answer || ball.distance_m > ball.radius_m)
             << hwy::TargetName(target) << ": a ball around " << ball.p.transpose() << " of radius " << ball.radius_m
             << " meets what is " << ball.distance_m << " m away";

@@ -54,9 +54,9 @@ SearchSetup with_pose_error(SearchSetup setup, double more_m) {
   return setup;
 }
 
-/// The nearest point w of an answer lies within e_k + r of every camera's not-free set. The primitive moved by the
-/// answer touches w to within the 1e-5 m of the answer and the 1e-5 m of the nearest point, so the distance to the set
-/// whose e_k are larger by r is then at most the sum, and no answer exceeds a distance.
+/// The nearest point w of an answer lies within e_k + r of every camera's not known free set. The primitive moved by
+/// the answer touches w to within the 1e-5 m of the answer and the 1e-5 m of the nearest point, so the distance to the
+/// set whose e_k are larger by r is then at most the sum, and no answer exceeds a distance.
 constexpr double kTouchM = 2e-5;
 
 TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
@@ -81,7 +81,7 @@ TEST(MovedByItsAnswer, TouchesTheSetGrownByTheResolution) {
   EXPECT_GT(told, 0);
 }
 
-/// With one camera a point within r of the not-free set is within r / (1 - growth of e_k per metre) of O itself.
+/// With one camera a point within r of the not known free set is within r / (1 - growth of e_k per metre) of O itself.
 TEST(MovedByItsAnswer, TouchesWithinTheResolutionWithOneCamera) {
   int told = 0;
   reference::RandomOptions options;

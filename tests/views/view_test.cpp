@@ -162,7 +162,7 @@ TEST(View, JoinsTheRobotOfAPixelThatTheFilterLowered) {
   EXPECT_FALSE(prepared(view).has_islands);
 }
 
-TEST(View, IgnoredPocketsAreFreedBehindTheRobotOnly) {
+TEST(View, IgnoredPocketsAreKnownFreeBehindTheRobotOnly) {
   SmallCamera c;
   c.policies.robot_pockets = Policy::ignored;
   c.policies.ignored_pocket_m = 0.25;

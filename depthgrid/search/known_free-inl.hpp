@@ -1,9 +1,9 @@
-// Which boxes a camera frees. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_FREED_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_FREED_INL
-#undef DEPTHGRID_SEARCH_FREED_INL
+// Which boxes a camera knows to be free. Included once for each instruction set. Internal.
+#if defined(DEPTHGRID_SEARCH_KNOWN_FREE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_SEARCH_KNOWN_FREE_INL
+#undef DEPTHGRID_SEARCH_KNOWN_FREE_INL
 #else
-#define DEPTHGRID_SEARCH_FREED_INL
+#define DEPTHGRID_SEARCH_KNOWN_FREE_INL
 #endif
 
 #include <algorithm>
@@ -114,8 +114,8 @@ HWY_INLINE M island_texels(const LocalCamera& camera, M left, const Footprint& a
   return hn::And(left, hn::Le(z_high, extremum(camera, at, image.island_far_minima_m.data(), min)));
 }
 
-/// Lanes of `asked` that the camera frees: seen free, or robot. Their rectangles lie in the image.
-HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_low, V z_high, PixelBounds pixels) {
+/// Lanes of `asked` that are known free to the camera: seen free, or robot. Their rectangles lie in the image.
+HWY_INLINE M known_free(const LocalCamera& camera, M asked, const Rectangle& r, V z_low, V z_high, PixelBounds pixels) {
   const Floats d;
   const Ints di;
   const I u0 = hn::ConvertTo(di, hn::IfThenElseZero(asked, r.u_low));
@@ -146,8 +146,8 @@ HWY_INLINE M freed(const LocalCamera& camera, M asked, const Rectangle& r, V z_l
                           : island_texels(camera, left, at, z_low, z_high));
 }
 
-/// Lanes that the camera frees wholly.
-HWY_INLINE M freed_whole(const LocalCamera& camera, M asked, const Bounds& b, PixelBounds pixels) {
+/// Lanes that are known free to the camera as a whole.
+HWY_INLINE M known_free_whole(const LocalCamera& camera, M asked, const Bounds& b, PixelBounds pixels) {
   const Floats d;
   const V zero = hn::Zero(d);
   const M in_front = hn::Gt(b.z_low, hn::Set(d, 1e-6F));
@@ -155,12 +155,11 @@ HWY_INLINE M freed_whole(const LocalCamera& camera, M asked, const Bounds& b, Pi
   const M inside =
       hn::And(hn::And(hn::And(hn::Ge(r.u_low, zero), hn::Lt(r.u_high, hn::Set(d, camera.width))), in_front),
               hn::And(hn::Ge(r.v_low, zero), hn::Lt(r.v_high, hn::Set(d, camera.height))));
-  return freed(camera, hn::And(asked, inside), r, b.z_low, b.z_high, pixels);
+  return known_free(camera, hn::And(asked, inside), r, b.z_low, b.z_high, pixels);
 }
 
-/// Lanes of which the camera frees the part in its view between the clip's depths; where there is no such part it is
-/// free.
-HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, PixelBounds pixels) {
+/// Lanes whose part in the camera's view, between the clip's depths, is known free to it; so is no part at all.
+HWY_INLINE M known_free_in_view(const LocalCamera& camera, const Clip& clip, const Bounds& b, PixelBounds pixels) {
   const Floats d;
   const V zero = hn::Zero(d);
   const V z_low = hn::Max(b.z_low, hn::Set(d, clip.low_m));
@@ -177,7 +176,7 @@ HWY_INLINE M freed_in_view(const LocalCamera& camera, const Clip& clip, const Bo
   const V last_v = hn::Set(d, camera.height - 1);
   const Rectangle r{hn::Min(hn::Max(whole.u_low, zero), last_u), hn::Min(hn::Max(whole.u_high, zero), last_u),
                     hn::Min(hn::Max(whole.v_low, zero), last_v), hn::Min(hn::Max(whole.v_high, zero), last_v)};
-  return hn::Or(empty, freed(camera, hn::Not(empty), r, z_low, z_high, pixels));
+  return hn::Or(empty, known_free(camera, hn::Not(empty), r, z_low, z_high, pixels));
 }
 
 }  // namespace depthgrid::search::HWY_NAMESPACE
