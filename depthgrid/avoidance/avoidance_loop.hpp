@@ -32,11 +32,14 @@ struct CycleReport {
   control::CycleOutput output;
 };
 
-/// One thread. cycle() neither allocates (as long as the evaluator does not) nor locks nor throws.
+/// - Takes: joint states from the port, rad or m; times in seconds on the cameras' clock.
+/// - Gives: commands to the port; report(), answers() and parts_world() in the world frame, metres.
+/// - Errors: the constructor throws Error; start() and cycle() return false.
+/// - Threads: one. cycle() neither locks nor throws, nor allocates as long as the evaluator does not.
 class AvoidanceLoop {
  public:
   /// Task and evaluator must outlive it. Throws Error when the controller's settings are invalid, there is no part, a
-  /// part's link is none, or the limits are not those of the model's joints in number.
+  /// part's link does not exist, or the limits are not those of the model's joints in number.
   AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task, DistanceEvaluator& evaluator,
                 const LoopSettings& settings);
 

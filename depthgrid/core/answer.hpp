@@ -8,7 +8,8 @@
 
 namespace depthgrid {
 
-/// World frame, metres. What was not asked for, or does not exist, keeps its initial value.
+/// - Frame and unit: world, metres; directions have no unit.
+/// - What was not asked for, or does not exist, keeps its initial value.
 struct Answer {
   /// From the capsule's surface to the nearest obstacle, at the time of the images. The search: to the obstacle set O,
   /// 0 where they touch; nearest_world to the resolution, direction_world from the axis to it.

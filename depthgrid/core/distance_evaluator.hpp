@@ -13,7 +13,10 @@
 
 namespace depthgrid {
 
-/// One thread, unless the evaluator says more. Nothing but construction throws, locks or allocates.
+/// - Takes: frames of a rig's cameras; capsules in the world frame, metres; times in seconds on the frames' clock.
+/// - Gives: an Answer for each capsule.
+/// - Errors: only constructors throw; update() says what became of a frame.
+/// - Threads: one, unless the evaluator says more. Nothing but construction locks or allocates.
 class DistanceEvaluator {
  public:
   DistanceEvaluator() = default;

@@ -7,18 +7,24 @@
 
 namespace depthgrid {
 
-/// The robot as one camera sees it: for each pixel the depth interval [near_m, far_m] of the padded robot model
-/// along that pixel's frustum, at the joint positions of the exposure. near_m = 0: no robot in this pixel. Where a
-/// ray crosses the robot several times this is the contiguous interval that holds its first surface. The whole interval
-/// of a pixel's frustum counts as robot. Same size as the depth image; the buffers must outlive the view.
-/// A camera's pixel counts as robot only where its own measured depth lies in the interval and far_m is finite.
+/// The robot as one camera sees it: the depth interval [near_m, far_m] that it fills in each pixel.
+/// - Shape: that of the depth image.
+/// - Unit: metres of depth; near_m = 0: no robot in this pixel.
+/// - Memory: not owned; the buffers must outlive the view.
+///
+/// The interval is that of the padded robot model along the pixel's frustum, at the joint positions of the exposure,
+/// and all of it counts as robot. Where a ray crosses the robot several times it is the contiguous interval that holds
+/// its first surface. A camera's pixel counts as robot only where its own measured depth lies in the interval and far_m
+/// is finite.
 struct RobotView {
   const float* near_m = nullptr;  ///< null: no robot in view
   const float* far_m = nullptr;
   std::ptrdiff_t stride_px = 0;  ///< floats between rows; 0: rows without padding
 };
 
-/// One exposure of one camera: depth and, where there is one, the robot in it. Never owns memory.
+/// One exposure of one camera: depth and, where there is one, the robot in it.
+/// - Unit of time: seconds.
+/// - Memory: not owned.
 struct Frame {
   DepthView depth;
   RobotView robot;

@@ -15,9 +15,14 @@ namespace depthgrid::grid {
 /// only), or a coordinate that is not finite. Null: it is a point, and answered.
 [[nodiscard]] const char* why_refused(const Capsule& capsule) noexcept;
 
-/// Evaluates distances on one rig. evaluate() and distance() may be called from many threads at once, but not while
-/// update() runs. The letter does not ask how old an image is: `now_s` is ignored, and distance_now_m is the distance
-/// at the time of the images, min(D, known_to).
+/// Evaluates distances on one rig.
+/// - Takes: frames of the rig's cameras; points (capsules without radius and length) in the world frame, metres.
+/// - Gives: an Answer for each point.
+/// - Errors: the constructor throws Error; update() says what became of a frame, why_refused() why there is no answer.
+/// - Threads: evaluate() and distance() from many at once, but not while update() runs.
+///
+/// The letter does not ask how old an image is: `now_s` is ignored, and distance_now_m is the distance at the time of
+/// the images, min(D, known_to).
 class GridEvaluator final : public DistanceEvaluator {
  public:
   /// `principal` indexes rig.cameras; all other cameras are secondary. Images must be free of lens distortion already.

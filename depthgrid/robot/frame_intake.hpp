@@ -20,8 +20,12 @@ struct IntakeReport {
   bool robot_removed = false;  ///< false: the robot is its own obstacle in this image
 };
 
-/// The robot in all cameras of a rig. Each camera may have a thread of its own, frames() counts as all of them;
-/// allocates in its constructor only.
+/// The robot in all cameras of a rig.
+/// - Takes: depth images, seconds on the history's clock; poses camera to world.
+/// - Gives: frames with the robot in them, good until the camera's next one.
+/// - Errors: the constructor throws Error; report() says where the robot could not be removed.
+/// - Threads: each camera may have one of its own; frames() counts as all of them.
+/// - Allocates in its constructor only.
 class FrameIntake {
  public:
   /// The history must outlive it. Throws Error as link_capsules() and RobotAtExposure do.

@@ -1,4 +1,11 @@
-// The sound search: the distance from points, spheres and capsules to everything that no camera has seen free.
+// The sound search: the distance from points, spheres and capsules to everything that is not known free.
+//
+// - Takes: a snapshot, capsules in the world frame, metres.
+// - Gives: a lower bound of the distance for each capsule, at most rho, in metres, and the obstacle's nearest point.
+// - Errors: none thrown; what is not finite gives not_evaluated.
+// - Threads: one Search for each thread, on any number of snapshots.
+//
+// What is promised, exactly:
 //
 //   free_k = { x : x projects inside image k and near_k < z_k(x) < g_k(pixel of x) },  N_k = W minus free_k
 //   O      = intersection over k of { x in W : some y in N_k minus R_k has |x - y| <= e_k(x) }
@@ -7,8 +14,8 @@
 // Answers never exceed D(P). Tight to r: the nearest point w of an answer below rho has |w - P| = answer (to 1e-5 m)
 // and lies within e_k(w) + r of N_k minus R_k for every camera k.
 //
-// A best-first search over the cubes of an octree around the capsule: a cube is dropped when one camera alone frees
-// it with everything that errors of pose and time may bring into it.
+// A best-first search over the cubes of an octree around the capsule: a cube is dropped when it is known free to one
+// camera alone, with everything that errors of pose and time may bring into it.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,11 @@ struct EvaluatorOptions {
   Budget budget{};  ///< of one evaluate()
 };
 
-/// A ViewStore and a Search. update() may run in other threads meanwhile, as ViewStore says.
+/// A ViewStore and a Search.
+/// - Takes: frames of the rig's cameras; capsules in the world frame, metres; times in seconds on the frames' clock.
+/// - Gives: an Answer for each capsule.
+/// - Errors: the constructor throws Error; update() says what became of a frame.
+/// - Threads: evaluate() and distance() one at a time; update() in others meanwhile, as ViewStore says.
 ///
 /// distance_now_m is lower by v_max times the age of the images, which counts from the newest exposure: what may have
 /// come nearer since. So the surveillance radius rho should exceed what a controller needs by v_max times the greatest

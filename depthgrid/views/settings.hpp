@@ -47,6 +47,9 @@ struct Policies {
   double ignored_pocket_m = 0;
 };
 
+/// - Units: metres, seconds, m/s, world frame.
+/// - To be set: space, the three policies, margins, v_max_m_s. The rest has defaults.
+/// - Errors: validate() throws Error.
 struct Settings {
   std::variant<std::monostate, FrustumSpace, BoxSpace> space;  ///< W; has to be set
   Policies policies;

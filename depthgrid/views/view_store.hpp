@@ -15,9 +15,13 @@ namespace depthgrid::views {
 
 class Snapshot;
 
-/// Holds a few prepared images a camera. Neither update() nor snapshot() locks, allocates or throws; both are
-/// lock-free. update(): one thread at a time for each camera; different cameras may update at the same time, and any
-/// number of threads may take snapshots meanwhile.
+/// - Takes: depth images of the rig's sizes; poses camera to world; seconds on one clock for all cameras.
+/// - Gives: snapshots, each the newest image of every camera at one instant.
+/// - Errors: the constructor throws Error; update() says what became of a frame.
+/// - Threads: update() one at a time for each camera, different cameras at once; snapshot() any number meanwhile.
+/// - Both are lock-free and allocate nothing.
+///
+/// It holds a few prepared images of each camera.
 class ViewStore {
  public:
   /// `held_snapshots`: how many different snapshots may be held at once before a camera's next frame is dropped (1-13);
@@ -28,13 +32,14 @@ class ViewStore {
   ViewStore(const ViewStore&) = delete;
   ViewStore& operator=(const ViewStore&) = delete;
 
-  /// Takes a frame of one camera. With `T_world_camera` the camera has moved; without it stands where the rig says.
+  /// Takes a frame of one camera. With `T_world_camera` the camera has moved; without, it is where the rig says.
   /// Unusable: no data, wrong size or scale, rows that overlap, half a robot view, a pose that is not a rigid
   /// transform, no such camera. Dropped: held snapshots occupy every buffer of this camera.
   [[nodiscard]] FrameUpdate update(std::size_t camera, const Frame& frame) noexcept;
   [[nodiscard]] FrameUpdate update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept;
 
-  /// The newest image of every camera, all published at one instant. Cameras without a frame so far free nothing.
+  /// The newest image of every camera, all published at one instant. To a camera without a frame so far nothing is
+  /// known free.
   /// t_ref is the newest exposure. The store must outlive the snapshot.
   [[nodiscard]] Snapshot snapshot() const noexcept;
 
@@ -47,8 +52,8 @@ class ViewStore {
   std::unique_ptr<State> state_;
 };
 
-/// A consistent set of views. Holds them until it is destroyed. Movable; queries on one snapshot from many threads are
-/// allowed.
+/// A consistent set of views, held until it is destroyed.
+/// - Threads: queries on one snapshot from any number of threads. Movable.
 class Snapshot {
  public:
   Snapshot(Snapshot&& other) noexcept;
