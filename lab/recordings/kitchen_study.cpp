@@ -101,8 +101,7 @@ std::string kitchen_tables() {
     }
   }
   out << "\n| principal | other cameras | grid in the workspace | gray | known free, letter's test | known free, whole "
-         "cell seen "
-         "free |\n|---|---|---|---|---|---|\n";
+         "cell seen free |\n|---|---|---|---|---|---|\n";
   for (std::size_t principal = 0; principal < rig.cameras.size(); ++principal) {
     for (const CameraSet& set : camera_sets(rig.cameras.size(), principal)) {
       // In ascending order: one other camera (the first), then all others.
