@@ -4,7 +4,8 @@
 #include <Eigen/Geometry>
 
 // Otherwise Eigen's objects would differ in layout between a program and the library: crashes instead of answers. What
-// lies on the heap differs with -mavx all the same, so no installed header owns a matrix there without Eigen::DontAlign.
+// lies on the heap differs with -mavx all the same, so no installed header owns a matrix there without
+// Eigen::DontAlign.
 static_assert(EIGEN_MAX_ALIGN_BYTES == 16,
               "depthgrid is built with EIGEN_MAX_ALIGN_BYTES=16: compile with -DEIGEN_MAX_ALIGN_BYTES=16 as well, or "
               "without -mavx and -march=native (CMake's target depthgrid::core sets it)");

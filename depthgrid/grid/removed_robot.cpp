@@ -5,7 +5,9 @@
 namespace depthgrid::grid {
 
 RemovedRobot::RemovedRobot(const RigCamera& camera, double beyond_m)
-    : rule_(camera.rule), beyond_m_(static_cast<float>(beyond_m)), depth_m_(camera.intrinsics.width_px, camera.intrinsics.height_px) {}
+    : rule_(camera.rule),
+      beyond_m_(static_cast<float>(beyond_m)),
+      depth_m_(camera.intrinsics.width_px, camera.intrinsics.height_px) {}
 
 Frame RemovedRobot::of(const Frame& frame) noexcept {
   if (frame.robot.near_m == nullptr) {
