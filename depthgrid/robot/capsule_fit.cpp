@@ -1,6 +1,8 @@
 #include "depthgrid/robot/capsule_fit.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -27,29 +29,23 @@ using Parameters = std::array<double, 5>;
 /// The capsule of these parameters that just contains the points.
 class Family {
  public:
-  Family(std::span<const Vector3d> points, Vector3d centre, Vector3d direction)
+  Family(const Eigen::ArrayX3d& points, Vector3d centre, Vector3d direction)
       : points_(points),
+        square_(points.rows()),
+        along_(points.rows()),
         centre_(std::move(centre)),
         z_(std::move(direction)),
         x_(z_.unitOrthogonal()),
         y_(z_.cross(x_)) {}
 
-  [[nodiscard]] Capsule operator()(const Parameters& p) const {
+  [[nodiscard]] Capsule operator()(const Parameters& p) {
     const Vector3d along = (z_ + p[0] * x_ + p[1] * y_).normalized();
     const Vector3d origin = centre_ + p[2] * x_ + p[3] * y_;
-    double square = 0;
-    for (const Vector3d& point : points_) {
-      square = std::max(square, (point - origin).cross(along).squaredNorm());
-    }
-    const double radius_m = std::sqrt(square) * (1 + p[4] * p[4]);
-    double low_m = kInfinity;
-    double high_m = -kInfinity;
-    for (const Vector3d& point : points_) {
-      const double t = (point - origin).dot(along);
-      const double reach = std::sqrt(std::max(0.0, radius_m * radius_m - (point - origin).cross(along).squaredNorm()));
-      low_m = std::min(low_m, t + reach);
-      high_m = std::max(high_m, t - reach);
-    }
+    project(origin, along);
+    const double radius_m = std::sqrt(square_.maxCoeff()) * (1 + p[4] * p[4]);
+    square_ = (radius_m * radius_m - square_).max(0.0).sqrt();  // how far the round end reaches beyond its centre
+    double low_m = (along_ + square_).minCoeff();
+    double high_m = (along_ - square_).maxCoeff();
     if (low_m > high_m) {  // one ball holds them all
       low_m = high_m = 0.5 * (low_m + high_m);
     }
@@ -57,12 +53,23 @@ class Family {
   }
 
  private:
-  std::span<const Vector3d> points_;
+  /// Of each point the square of its distance from the axis, and its place along it.
+  void project(const Vector3d& origin, const Vector3d& axis) {
+    const auto dx = points_.col(0) - origin.x();
+    const auto dy = points_.col(1) - origin.y();
+    const auto dz = points_.col(2) - origin.z();
+    square_ = (dy * axis.z() - dz * axis.y()).square() + (dz * axis.x() - dx * axis.z()).square() +
+              (dx * axis.y() - dy * axis.x()).square();
+    along_ = dx * axis.x() + dy * axis.y() + dz * axis.z();
+  }
+
+  const Eigen::ArrayX3d& points_;
+  Eigen::ArrayXd square_, along_;
   Vector3d centre_, z_, x_, y_;
 };
 
 /// Walks along the parameters one by one as long as the volume falls, then with half the steps.
-Capsule descend(const Family& family, double size_m) {
+Capsule descend(Family family, double size_m) {
   Parameters at{};
   double least = volume(family(at));
   constexpr int kHalvings = 15;
@@ -87,19 +94,66 @@ Capsule descend(const Family& family, double size_m) {
   return family(at);
 }
 
+/// Points that lie together in a file, mostly also in space.
+struct Block {
+  std::span<const Vector3d> points;
+  Eigen::AlignedBox3d box;
+
+  /// Not below the same product with any of the points, rounding included.
+  [[nodiscard]] double farthest(const Vector3d& direction) const {
+    return Vector3d((direction.array() > 0).select(box.max(), box.min())).dot(direction);
+  }
+};
+
+std::vector<Block> blocks_of(std::span<const Vector3d> points) {
+  constexpr std::size_t kSize = 64;
+  std::vector<Block> result;
+  for (std::size_t begin = 0; begin < points.size(); begin += kSize) {
+    result.push_back({points.subspan(begin, std::min(kSize, points.size() - begin)), {}});
+    for (const Vector3d& point : result.back().points) {
+      result.back().box.extend(point);
+    }
+  }
+  return result;
+}
+
+/// The first of the points that are farthest in a direction. `bounds` is room for a number a block.
+const Vector3d* farthest_of(const std::vector<Block>& blocks, const Vector3d& direction, std::vector<double>& bounds) {
+  std::transform(blocks.begin(), blocks.end(), bounds.begin(),
+                 [&direction](const Block& block) { return block.farthest(direction); });
+  const auto promising = static_cast<std::size_t>(std::max_element(bounds.begin(), bounds.end()) - bounds.begin());
+  double least = -kInfinity;
+  for (const Vector3d& point : blocks[promising].points) {
+    least = std::max(least, point.dot(direction));
+  }
+  const Vector3d* result = &blocks.front().points.front();
+  double most = -kInfinity;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (bounds[i] < least) {
+      continue;
+    }
+    for (const Vector3d& point : blocks[i].points) {
+      if (const double value = point.dot(direction); value > most) {
+        most = value;
+        result = &point;
+      }
+    }
+  }
+  return result;
+}
+
 /// The outermost points in many directions: all that matters, nearly, for a search over many points.
 std::vector<Vector3d> outermost(std::span<const Vector3d> points) {
   constexpr int kDirections = 300;
+  const std::vector<Block> blocks = blocks_of(points);
+  std::vector<double> bounds(blocks.size());
   std::vector<Vector3d> result;
   for (int i = 0; i < kDirections; ++i) {  // evenly over the sphere, on a spiral
     const double z = 1 - (2 * i + 1.0) / kDirections;
     const double turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
     const double across = std::sqrt(1 - z * z);
     const Vector3d direction(across * std::cos(turn), across * std::sin(turn), z);
-    const Vector3d* farthest = points.data();
-    for (const Vector3d& point : points) {
-      farthest = point.dot(direction) > farthest->dot(direction) ? &point : farthest;
-    }
+    const Vector3d* const farthest = farthest_of(blocks, direction, bounds);
     if (std::find(result.begin(), result.end(), *farthest) == result.end()) {
       result.push_back(*farthest);
     }
@@ -141,9 +195,13 @@ Capsule fit_capsule(std::span<const Vector3d> points) {
     high = high.cwiseMax(point);
   }
   const Vector3d centre = 0.5 * (low + high);
+  Eigen::ArrayX3d columns(static_cast<Eigen::Index>(outer.size()), 3);
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    columns.row(static_cast<Eigen::Index>(i)) = outer[i].transpose();
+  }
   Capsule best{centre, centre, kInfinity};
   for (const Vector3d& direction : start_directions(outer, centre)) {
-    const Capsule found = descend(Family(outer, centre, direction), (high - low).norm());
+    const Capsule found = descend(Family(columns, centre, direction), (high - low).norm());
     best = volume(found) < volume(best) || !std::isfinite(best.radius_m) ? found : best;
   }
   double radius_m = 0;
@@ -179,7 +237,8 @@ std::vector<Capsule> around(const BoxShape& box) {
     shortest = (longest + 1) % 3;
   }
   const int across = 3 - longest - shortest;
-  const int count = static_cast<int>(std::clamp(std::round(box.size_m[across] / box.size_m[shortest]), 1.0, kMaxCount));
+  const double ratio = box.size_m[across] / std::max(box.size_m[shortest], std::numeric_limits<double>::min());
+  const int count = static_cast<int>(std::clamp(std::round(ratio), 1.0, kMaxCount));
   const double width_m = box.size_m[across] / count;
   const Capsule one = around(CylinderShape{0.5 * std::hypot(width_m, box.size_m[shortest]), box.size_m[longest]});
   std::vector<Capsule> result;

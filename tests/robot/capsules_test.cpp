@@ -128,6 +128,29 @@ TEST(LinkCapsules, Options) {
   EXPECT_NE(test::thrown_message([&] { (void)link_capsules(model, {{}, -1.0}); }), "");
 }
 
+TEST(LinkCapsules, ACapsuleOfTheFileIsThatCapsule) {
+  const RobotModel model(parse_urdf(
+      "<robot name='r'><link name='a'><collision><origin xyz='1 0 0'/><geometry><capsule radius='0.05' length='0.3'/>"
+      "</geometry></collision></link></robot>",
+      "arm.urdf"));
+  const std::vector<LinkCapsule> capsules = link_capsules(model);
+  ASSERT_EQ(capsules.size(), 1U);
+  EXPECT_EQ(capsules[0].capsule.a, Vector3d(1, 0, -0.15));
+  EXPECT_EQ(capsules[0].capsule.b, Vector3d(1, 0, 0.15));
+  EXPECT_EQ(capsules[0].capsule.radius_m, 0.05);
+}
+
+TEST(LinkCapsules, PlatesAndWiresAreContained) {
+  for (const Vector3d& size : {Vector3d(0.4, 0.2, 0), Vector3d(0, 0.3, 0), Vector3d(0.1, 0, 0.1)}) {
+    const std::vector<Capsule> capsules = around(BoxShape{size});
+    Random random(1);
+    for (int k = 0; k < 100; ++k) {
+      EXPECT_LE(outside_m(capsules, random.in_cube(0.5).cwiseProduct(size)), 1e-12) << size.transpose();
+    }
+    EXPECT_LE(capsules.size(), 8U);
+  }
+}
+
 TEST(LinkCapsules, MeshesThatAreNone) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "depthgrid_bad.stl";
   std::ofstream(file) << "nothing that is a mesh";
@@ -177,8 +200,8 @@ TEST(LinkCapsules, OfThePandaContainEveryCornerOfItsMeshes) {
     for (const Vector3d& corner : mesh.corners) {
       most_m = std::max(most_m, outside_m({item.capsule}, shape.T_link_shape * corner));
     }
-    EXPECT_LE(most_m, 1e-7) << model.links()[item.link].name;  // the library reads corners in single precision
-    EXPECT_GE(most_m, -1e-6) << model.links()[item.link].name;
+    EXPECT_LE(most_m, 1e-9) << model.links()[item.link].name;
+    EXPECT_GE(most_m, -1e-9) << model.links()[item.link].name;
     const double looseness = volume(item.capsule) / mesh.volume_m3;
     std::cout << model.links()[item.link].name << ": " << looseness << " times the mesh, radius "
               << item.capsule.radius_m << " m\n";
