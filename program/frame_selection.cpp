@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "depthgrid/files/number_parsing.hpp"
+#include "depthgrid/core/number_parsing.hpp"
 #include "program/usage_error.hpp"
 
 namespace depthgrid::program {
@@ -11,7 +11,7 @@ namespace depthgrid::program {
 namespace {
 
 long frame_number(const std::string& text, const std::string& whole) {
-  const auto value = files::parse_number<long>(text);
+  const auto value = parse_number<long>(text);
   if (!value) {
     fail_usage("--frames ", whole, ": '", text, "' is not a frame number; write 5, 0:80, 0:80:8 or 1,4,9");
   }
@@ -23,7 +23,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0;;) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.emplace_back(files::trimmed(text.substr(begin, end - begin)));
+    parts.emplace_back(trimmed(text.substr(begin, end - begin)));
     if (end == text.size()) {
       return parts;
     }

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/files/number_parsing.hpp"
+#include "depthgrid/core/number_parsing.hpp"
 #include "depthgrid/files/text_file.hpp"
 
 namespace depthgrid::files {

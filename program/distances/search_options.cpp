@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "depthgrid/files/number_parsing.hpp"
+#include "depthgrid/core/number_parsing.hpp"
 #include "program/usage_error.hpp"
 
 namespace depthgrid::program {
@@ -30,7 +30,7 @@ views::BoxSpace box_of(const std::string& text) {
   std::string_view rest = text;
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const std::size_t comma = rest.find(',');
-    const auto number = files::parse_number<double>(rest.substr(0, comma));
+    const auto number = parse_number<double>(rest.substr(0, comma));
     if (!number || !std::isfinite(*number) || (comma == std::string_view::npos) != (k + 1 == numbers.size())) {
       fail_usage("--box ", text, ": must be six numbers x0,y0,z0,x1,y1,z1, metres: the low and the high corner");
     }

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace depthgrid::files {
+namespace depthgrid {
 
 /// Without the blanks and carriage returns around it; a view into the same text, even where nothing is left.
 constexpr std::string_view trimmed(std::string_view text) noexcept {
@@ -29,4 +29,4 @@ std::optional<Number> parse_number(std::string_view text) noexcept {
   return error == std::errc() && end == text.data() + text.size() ? std::optional<Number>(number) : std::nullopt;
 }
 
-}  // namespace depthgrid::files
+}  // namespace depthgrid
