@@ -19,7 +19,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 # What find_package(depthgrid) looks for behind the static libraries.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev, libhwy-dev, libpng-dev, zlib1g-dev, liburdfdom-dev, libassimp-dev")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libeigen3-dev, libhwy-dev, libpng-dev, zlib1g-dev, libpugixml-dev")
 find_program(DEPTHGRID_SHLIBDEPS dpkg-shlibdeps)
 mark_as_advanced(DEPTHGRID_SHLIBDEPS)
 if(DEPTHGRID_SHLIBDEPS)

@@ -51,9 +51,18 @@ Capsule rounded(const CylinderShape& cylinder, const Pose& T_link_shape, std::ve
 }
 
 Capsule around_mesh(const MeshShape& mesh, const Pose& T_link_shape) {
+  constexpr double kMaxCoordinate_m = 100;
   std::vector<Vector3d> points = mesh_points(mesh.file);
   for (Vector3d& p : points) {
-    p = T_link_shape * Vector3d(p.cwiseProduct(mesh.scale));
+    p = p.cwiseProduct(mesh.scale);
+    if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() <= kMaxCoordinate_m)) {
+      fail(mesh.file.string(), ": at scale (", mesh.scale.transpose(), ") a corner is (", p.transpose(),
+           ") m, must be within ", kMaxCoordinate_m, " m; scale 0.001 is for files in millimetres");
+    }
+    p = T_link_shape * p;
+  }
+  if (!has_area(points)) {
+    fail(mesh.file.string(), ": at scale (", mesh.scale.transpose(), ") the mesh has no area");
   }
   return fit_capsule(points);
 }
@@ -69,6 +78,9 @@ std::vector<Capsule> capsules_of(const LinkDescription& link) {
   for (const LinkShape& item : link.shapes) {
     if (const auto* cylinder = std::get_if<CylinderShape>(&item.shape)) {
       result.push_back(rounded(*cylinder, item.T_link_shape, balls));
+    } else if (const auto* ready = std::get_if<CapsuleShape>(&item.shape)) {
+      const Vector3d half(0, 0, 0.5 * ready->length_m);
+      result.push_back(moved(item.T_link_shape, {-half, half, ready->radius_m}));
     } else if (const auto* box = std::get_if<BoxShape>(&item.shape)) {
       for (const Capsule& capsule : around(*box)) {
         result.push_back(moved(item.T_link_shape, capsule));

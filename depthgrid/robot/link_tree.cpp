@@ -51,11 +51,16 @@ std::vector<TreeLink> link_tree(const RobotDescription& robot) {
   }
 
   std::vector<TreeLink> tree;
-  const auto grow = [&](const auto& self, const TreeLink& link) -> void {
-    tree.push_back(link);
-    const std::size_t here = tree.size() - 1;
-    for (const std::size_t joint : joints_from_link[link.link]) {
-      self(self, {links.at(robot.joints[joint].child_link), joint, here});
+  const auto grow = [&](const TreeLink& root) {
+    std::vector<TreeLink> next{root};  // not by recursion: a chain may be longer than the program's stack
+    while (!next.empty()) {
+      tree.push_back(next.back());
+      next.pop_back();
+      const std::size_t here = tree.size() - 1;
+      const std::vector<std::size_t>& children = joints_from_link[tree[here].link];
+      for (auto joint = children.rbegin(); joint != children.rend(); ++joint) {
+        next.push_back({links.at(robot.joints[*joint].child_link), *joint, here});
+      }
     }
   };
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
@@ -66,7 +71,7 @@ std::vector<TreeLink> link_tree(const RobotDescription& robot) {
       fail(robot.source, ": links '", robot.links[tree[0].link].name, "' and '", robot.links[i].name,
            "' both hang on no joint; a robot has one root");
     }
-    grow(grow, {i, std::nullopt, std::nullopt});
+    grow({i, std::nullopt, std::nullopt});
   }
   if (tree.empty()) {
     fail(robot.source, ": every link hangs on a joint; a robot needs a root, so there is a loop");

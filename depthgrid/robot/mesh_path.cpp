@@ -1,8 +1,11 @@
 #include "depthgrid/robot/mesh_path.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/robot/words.hpp"
 
 namespace depthgrid::robot {
 
@@ -10,7 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool begins_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+/// Where a package or the robot's own folder is; a mesh may lie below it.
+struct Place {
+  fs::path path;
+  fs::path within;
+};
+
+fs::path folder_of(const fs::path& urdf) {
+  std::error_code unused;
+  return fs::absolute(urdf, unused).lexically_normal().parent_path();
+}
 
 /// The folder of a package: as stated, else a folder of that name that holds the URDF file, or stands beside one.
 fs::path package_folder(const std::string& package, const fs::path& urdf, const UrdfOptions& options,
@@ -19,7 +31,7 @@ fs::path package_folder(const std::string& package, const fs::path& urdf, const 
     return stated->second;
   }
   std::error_code unused;
-  for (fs::path folder = fs::absolute(urdf, unused).parent_path();; folder = folder.parent_path()) {
+  for (fs::path folder = folder_of(urdf);; folder = folder.parent_path()) {
     if (folder.filename() == package) {
       return folder;
     }
@@ -27,36 +39,90 @@ fs::path package_folder(const std::string& package, const fs::path& urdf, const 
       return folder / package;
     }
     if (folder == folder.parent_path()) {
-      fail(context, "no folder is stated for package '", package, "', and none of that name holds the file");
+      fail(context, "no folder is stated for package '", shown(package),
+           "', and none of that name is around the file: state it in UrdfOptions::packages[\"", shown(package), "\"]");
     }
   }
+}
+
+/// The nearest folder around the file that is a package, else the file's own.
+fs::path robot_folder(const fs::path& urdf) {
+  std::error_code unused;
+  for (fs::path folder = folder_of(urdf); folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (fs::is_regular_file(folder / "package.xml", unused)) {
+      return folder;
+    }
+  }
+  return folder_of(urdf);
+}
+
+/// With %20 and the like as the bytes that they stand for, where this is not the name of a file as it is.
+fs::path decoded(const fs::path& path) {
+  std::error_code unused;
+  const std::string text = path.string();
+  if (text.find('%') == std::string::npos || fs::exists(path, unused)) {
+    return path;
+  }
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned value = 0;
+    const char* const begin = text.data() + i + 1;
+    if (text[i] == '%' && i + 2 < text.size() && std::from_chars(begin, begin + 2, value, 16).ptr == begin + 2 &&
+        value >= 0x20) {
+      result += static_cast<char>(value);
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
+  return result;
+}
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  std::error_code unused;
+  const fs::path absolute = fs::absolute(folder / "", unused).lexically_normal();  // ends in a slash
+  const std::string text = fs::absolute(path, unused).lexically_normal().string();
+  return text.starts_with(absolute.string());
 }
 
 }  // namespace
 
 fs::path mesh_path(const std::string& name, const fs::path& urdf, const UrdfOptions& options,
                    const std::string& context) {
-  const std::string package_scheme = "package://";
-  const std::string file_scheme = "file://";
-  fs::path path;
-  if (begins_with(name, package_scheme)) {
+  const std::string_view package_scheme = "package://";
+  const std::string_view file_scheme = "file://";
+  const std::string mesh = "mesh '" + shown(name) + "'";
+  Place place{urdf.parent_path() / name, robot_folder(urdf)};
+  if (name.starts_with(package_scheme)) {
     const std::string rest = name.substr(package_scheme.size());
     const std::size_t slash = rest.find('/');
     if (slash == std::string::npos || slash == 0) {
-      fail(context, "mesh '", name, "' must be package://NAME/FILE");
+      fail(context, mesh, " must be package://NAME/FILE");
     }
-    path = package_folder(rest.substr(0, slash), urdf, options, context + "mesh '" + name + "': ") /
-           rest.substr(slash + 1);
-  } else if (begins_with(name, file_scheme)) {
-    path = name.substr(file_scheme.size());
-  } else {
-    path = urdf.parent_path() / name;
+    place.within = package_folder(rest.substr(0, slash), urdf, options, context + mesh + ": ");
+    place.path = place.within / fs::path(rest.substr(slash + 1)).relative_path();
+  } else if (name.starts_with(file_scheme)) {
+    const std::string rest = name.substr(file_scheme.size());
+    place.path = rest.substr(rest.starts_with("localhost/") ? std::string_view("localhost").size() : 0);
+    if (!place.path.is_absolute()) {
+      fail(context, mesh, " must be file:///FOLDER/FILE, or a name relative to the URDF file");
+    }
+  } else if (name.find("://") != std::string::npos) {
+    fail(context, mesh, " must begin with package:// or file://, or be relative to the URDF file");
   }
+  place.path = decoded(place.path);
   std::error_code unused;
-  if (options.require_meshes && !fs::is_regular_file(path, unused)) {
-    fail(context, "mesh '", name, "' is ", path, ", which is not there");
+  const bool within = lies_in(place.path, place.within) ||
+                      std::any_of(options.packages.begin(), options.packages.end(),
+                                  [&place](const auto& package) { return lies_in(place.path, package.second); });
+  if (!within) {
+    fail(context, mesh, " is ", place.path, ", outside of the robot's folder ", place.within,
+         ": state the folder that it is in as one of UrdfOptions::packages");
   }
-  return path;
+  if (options.require_meshes && !fs::is_regular_file(place.path, unused)) {
+    fail(context, mesh, " is ", place.path, ", which is not there");
+  }
+  return place.path;
 }
 
 }  // namespace depthgrid::robot

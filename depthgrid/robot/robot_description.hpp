@@ -21,6 +21,11 @@ struct CylinderShape {
   double radius_m = 0;
   double length_m = 0;
 };
+/// A cylinder with round ends: centred, axis along z, the length without the ends.
+struct CapsuleShape {
+  double radius_m = 0;
+  double length_m = 0;
+};
 /// Centred, sides along the axes.
 struct BoxShape {
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -33,7 +38,7 @@ struct MeshShape {
 
 struct LinkShape {
   Pose T_link_shape = Pose::Identity();
-  std::variant<SphereShape, CylinderShape, BoxShape, MeshShape> shape;
+  std::variant<SphereShape, CylinderShape, CapsuleShape, BoxShape, MeshShape> shape;
 };
 
 struct LinkDescription {
