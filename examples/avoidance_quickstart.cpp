@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <numbers>
+#include <stdexcept>
 
 #include "depthgrid/avoidance/avoidance_loop.hpp"
 #include "depthgrid/avoidance/history_port.hpp"
@@ -148,6 +149,7 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
 
 int main(int argc, char** argv) try {
   // YOURS: where meshes are that the URDF calls package://NAME/...: load_urdf(file, {.packages = {{"NAME", "/path"}}}).
+  if (argc == 2 || argc > 3) throw std::runtime_error("usage: avoidance_quickstart [ROBOT.urdf TIP_LINK]");
   return argc == 3 ? run(robot::RobotModel(robot::load_urdf(argv[1])), argv[2]) : run(robot::kuka_lwr4(), "lwr_7_link");
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

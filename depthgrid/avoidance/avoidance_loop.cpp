@@ -33,6 +33,7 @@ AvoidanceLoop::AvoidanceLoop(robot::PlacedRobot robot, control::MotionTask& task
   if (settings.evaluate_every < 1) {
     fail("avoidance loop: evaluates every ", settings.evaluate_every, " periods, must be at least 1");
   }
+  (void)pose_from_matrix(robot_.T_world_base.matrix(), "avoidance loop: T_world_base");  // throws where it is not rigid
   jacobian_.setZero(6, joints);
   const control::PointJacobian none = control::PointJacobian::Zero(3, joints);
   body_.assign(settings.parts.size() - (settings.end_effector_limits ? 0 : 1), {none, {}});
@@ -68,7 +69,13 @@ bool AvoidanceLoop::cycle(control::RobotPort& port, double now_s) noexcept {
   if (!started_) {
     return false;
   }
-  bool working = port.read(state_) && state_.position_rad.allFinite();
+  control::JointState next = state_;
+  // A state of another robot is none.
+  bool working = port.read(next) && next.position_rad.size() == state_.position_rad.size();
+  if (working) {
+    state_ = next;
+  }
+  working = working && state_.position_rad.allFinite();
   const std::span<const double> q(state_.position_rad.data(), static_cast<std::size_t>(state_.position_rad.size()));
   working = robot_.link_poses(q, T_world_link_) && working;
   place(settings_.parts, T_world_link_, parts_world_);

@@ -6,7 +6,8 @@ bool HistoryPort::read(control::JointState& state) noexcept {
   if (!port_.read(state)) {
     return false;
   }
-  (void)history_.add(state.time_s, {state.position_rad.data(), static_cast<std::size_t>(state.position_rad.size())});
+  const std::span<const double> q(state.position_rad.data(), static_cast<std::size_t>(state.position_rad.size()));
+  refused_ += history_.add(state.time_s, q) ? 0 : 1;
   return true;
 }
 

@@ -16,6 +16,7 @@ namespace depthgrid {
 [[nodiscard]] std::string cpp_text(int value);
 [[nodiscard]] std::string cpp_text(bool value);
 [[nodiscard]] std::string cpp_text(std::string_view text);
+std::string cpp_text(const char* text) = delete;  // would be taken for a bool
 [[nodiscard]] std::string cpp_text(const Eigen::Vector3d& value);
 [[nodiscard]] std::string cpp_text(const Pose& pose);
 [[nodiscard]] std::string cpp_text(const CameraMargins& margins);

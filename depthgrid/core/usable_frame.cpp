@@ -1,5 +1,7 @@
 #include "depthgrid/core/usable_frame.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 
 namespace depthgrid {
@@ -13,6 +15,11 @@ const char* why_unusable(const DepthView& depth, const PinholeCamera& camera) no
   }
   if (std::abs(with_stride(depth).stride_bytes) < row_bytes(depth.format, depth.width_px)) {
     return "the depth image's rows overlap: the stride is less than a row";
+  }
+  const std::ptrdiff_t bytes = row_bytes(depth.format, 1);
+  if (depth.stride_bytes % bytes != 0 ||
+      reinterpret_cast<std::uintptr_t>(depth.data) % static_cast<std::uintptr_t>(bytes) != 0) {
+    return "the depth image's values are not aligned: data and stride must be multiples of a value's bytes";
   }
   return nullptr;
 }

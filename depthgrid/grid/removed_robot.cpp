@@ -1,5 +1,7 @@
 #include "depthgrid/grid/removed_robot.hpp"
 
+#include <cmath>
+
 #include "depthgrid/core/usable_frame.hpp"
 
 namespace depthgrid::grid {
@@ -19,7 +21,8 @@ Frame RemovedRobot::of(const Frame& frame) noexcept {
     for (int u = 0; u < depth_m_.width_px(); ++u) {
       const std::ptrdiff_t at = v * read.robot.stride_px + u;
       float& reading_m = depth_m_.at(u, v);
-      if (read.robot.near_m[at] > 0 && read.robot.near_m[at] <= reading_m && reading_m <= read.robot.far_m[at]) {
+      if (read.robot.near_m[at] > 0 && read.robot.near_m[at] <= reading_m && reading_m <= read.robot.far_m[at] &&
+          std::isfinite(read.robot.far_m[at])) {
         reading_m = beyond_m_;
       }
     }

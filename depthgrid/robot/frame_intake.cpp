@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "depthgrid/core/usable_frame.hpp"
+
 namespace depthgrid::robot {
 
 FrameIntake::FrameIntake(const Rig& rig, const PlacedRobot& robot, const JointHistory& history,
@@ -10,6 +12,7 @@ FrameIntake::FrameIntake(const Rig& rig, const PlacedRobot& robot, const JointHi
       padding_m_(settings.removal.padding_m),
       report_(rig.cameras.size()),
       frames_(rig.cameras.size()) {
+  (void)checked_rig(rig, "the intake");
   const std::vector<LinkCapsule> links = link_capsules(robot.model, capsules);
   for (const RigCamera& camera : rig.cameras) {
     robots_.push_back(std::make_unique<RobotAtExposure>(robot, history, camera.intrinsics, links, settings));
@@ -25,7 +28,8 @@ Frame FrameIntake::frame(std::size_t camera, const Frame& seen, const Pose& T_wo
     return {};
   }
   const ExposedRobot robot = robots_[camera]->find(seen.time_s, T_world_camera, &seen.depth);
-  report_[camera] = {robot.joints, robot.view.near_m != nullptr};
+  report_[camera] = {robot.joints,
+                     robot.view.near_m != nullptr && why_unusable(seen.depth, cameras_[camera].intrinsics) == nullptr};
   return {seen.depth, robot.view, seen.time_s};
 }
 

@@ -18,6 +18,7 @@ RobotAtExposure::RobotAtExposure(PlacedRobot robot, const JointHistory& history,
       T_world_link_(robot_.model.links().size(), Pose::Identity()),
       motion_m_(removal_.capsules().size()) {
   const RobotModel& model = robot_.model;
+  (void)pose_from_matrix(robot_.T_world_base.matrix(), "T_world_base");  // throws where it is not rigid
   if (!(std::isfinite(settings_.time_error_s) && settings_.time_error_s >= 0)) {
     fail(model.source(), ": the error of time is ", settings_.time_error_s, " s, must be finite and not negative");
   }

@@ -62,7 +62,7 @@ struct Sight {
     }
   }
 
-  /// The same for those pixels of a block of 4 * 2^level a side that do not known free what is within slack of the
+  /// The same for those pixels of a block of 4 * 2^level a side that do not free what is within slack of the
   /// point; the pyramid says which blocks have none. Stops at a measured one, which nothing outranks.
   void read_block(std::size_t level, int i, int j, const PixelWindow& window, int& pixels_left,
                   Look& known) const noexcept {

@@ -1,9 +1,18 @@
 #include "lab/measure/samples.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
 namespace depthgrid::lab {
+
+double Samples::quantile(double q) const {
+  // The rank ceil(q n), so that a late call of few is not passed over.
+  const auto n = static_cast<double>(count());
+  const double rank = std::max(1.0, std::ceil(std::clamp(q, 0.0, 1.0) * n));
+  return report::quantile(values_, n > 1 ? (rank - 1) / (n - 1) : 0);
+}
 
 double Samples::mean() const {
   return empty() ? std::numeric_limits<double>::quiet_NaN()

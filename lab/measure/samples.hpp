@@ -15,9 +15,10 @@ class Samples {
   void add(double value) { values_.push_back(value); }
   [[nodiscard]] std::size_t count() const { return values_.size(); }
   [[nodiscard]] bool empty() const { return values_.empty(); }
-  /// NaN when there are none, as all figures.
+  /// NaN when there are none, as all figures. Percentiles are a measured value that at least the share q does not
+  /// exceed.
   [[nodiscard]] double mean() const;
-  [[nodiscard]] double quantile(double q) const { return report::quantile(values_, q); }
+  [[nodiscard]] double quantile(double q) const;
   [[nodiscard]] double median() const { return quantile(0.5); }
   [[nodiscard]] double largest() const { return quantile(1); }
 

@@ -28,7 +28,7 @@ std::vector<Answer> evaluate(const DistancesPlan& plan, const std::vector<files:
   std::vector<Capsule> capsules;
   capsules.reserve(points_world.size());
   for (const files::ControlPoint& point : points_world) {
-    if (!plan.takes_shapes && (point.has_end || grid::why_refused(point.capsule) != nullptr)) {
+    if (!plan.takes_shapes && (point.has_end || point.capsule.radius_m != 0)) {
       fail("control point '", point.id, "' has a ", point.has_end ? "second end" : "radius",
            ", which only --method search knows");
     }

@@ -50,12 +50,21 @@ TEST_F(Loop, RefusesSettingsThatDoNotFit) {
 class FailingArm final : public control::RobotPort {
  public:
   explicit FailingArm(control::SimulatedArm& arm) : arm_(arm) {}
-  bool read(control::JointState& state) noexcept override { return readable && arm_.read(state); }
+  bool read(control::JointState& state) noexcept override {
+    if (!readable || !arm_.read(state)) {
+      return false;
+    }
+    if (other_joints) {
+      state.position_rad = control::JointVector::Zero(3);
+    }
+    return true;
+  }
   bool write(const control::JointCommand& command) noexcept override {
     ++written;
     return arm_.write(command);
   }
   bool readable = true;
+  bool other_joints = false;
   int written = 0;
 
  private:
@@ -88,6 +97,27 @@ TEST_F(Loop, CommandsNothingBeforeAStartThatSucceeded) {
   failing.readable = true;
   EXPECT_FALSE(loop.cycle(port, 3 * kPeriod));
   EXPECT_EQ(failing.written, 1);
+}
+
+TEST_F(Loop, TakesAStateOfAnotherRobotForNone) {
+  const LoopSettings settings = test::loop_settings(robot::nine_control_points(model_));
+  AvoidanceLoop loop({model_}, task_, nothing_, settings);
+  control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+  FailingArm port(arm);
+  ASSERT_TRUE(loop.start(port));
+  EXPECT_TRUE(loop.cycle(port, kPeriod));
+  const Eigen::Vector3d before_world = loop.report().end_effector_world;
+  port.other_joints = true;
+  EXPECT_FALSE(loop.cycle(port, 2 * kPeriod));
+  EXPECT_EQ(loop.report().end_effector_world, before_world) << "stands where the last state had it";
+  EXPECT_TRUE(loop.report().output.command.position_rad.allFinite());
+}
+
+TEST_F(Loop, RefusesABaseThatIsNotRigid) {
+  const LoopSettings settings = test::loop_settings(robot::nine_control_points(model_));
+  Pose scaled = Pose::Identity();
+  scaled.linear() *= 1000.0;
+  EXPECT_THROW(AvoidanceLoop({model_, scaled}, task_, nothing_, settings), Error);
 }
 
 TEST_F(Loop, AddsNoPositionToTheHistoryWithoutAState) {

@@ -85,6 +85,7 @@ TEST(HistoryPort, RemembersEveryNewState) {
   arm.told.position_rad[0] += 0.2;
   EXPECT_TRUE(port.read(state)) << "the same time again: passed on, not remembered";
   EXPECT_EQ(state.position_rad, arm.told.position_rad);
+  EXPECT_EQ(port.refused(), 1);
   ASSERT_TRUE(history.at(1, q).known());
   EXPECT_EQ(q[0], test::bent()[0]);
   arm.there = false;

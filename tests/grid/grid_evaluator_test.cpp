@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace depthgrid::grid {
@@ -66,6 +67,11 @@ TEST(GridEvaluator, OneCameraSeesAnObstacleBehindTheRobotOnlyInCaseFour) {
   GridEvaluator removed(rig_of(1), 0, kCells, letter(RobotPixels::removed));
   ASSERT_TRUE(removed.update(0, scene.frame()).taken());
   EXPECT_EQ(removed.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
+  // A robot without an end frees nothing.
+  RobotBeforeWall endless;
+  std::fill(endless.far_m.begin(), endless.far_m.end(), std::numeric_limits<float>::infinity());
+  ASSERT_TRUE(removed.update(0, endless.frame()).taken());
+  EXPECT_LT(removed.distance(kInRobot).nearest.distance_m, 0.1);
   Frame without_stride = scene.frame();
   without_stride.depth.stride_bytes = 0;
   ASSERT_TRUE(removed.update(0, without_stride).taken());

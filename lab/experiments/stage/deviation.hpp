@@ -43,7 +43,4 @@ class Deviation {
   std::size_t not_compared_ = 0;
 };
 
-/// The value below which the share q in [0, 1] of the values lies; NaN when there are none.
-[[nodiscard]] double quantile(std::vector<double> values, double q);
-
 }  // namespace depthgrid::experiments
