@@ -12,7 +12,7 @@ static_assert(EIGEN_MAX_ALIGN_BYTES == 16,
 static_assert(alignof(Eigen::Isometry3d) == 16 && sizeof(Eigen::Isometry3d) == 128,
               "depthgrid is built with Eigen's own alignment of fixed sizes: compile without EIGEN_DONT_ALIGN, "
               "EIGEN_DONT_VECTORIZE and EIGEN_MAX_STATIC_ALIGN_BYTES");
-static_assert(!Eigen::Matrix4d::IsRowMajor,
+static_assert(Eigen::Matrix4d::IsRowMajor == 0,
               "depthgrid is built with columns first: compile without EIGEN_DEFAULT_TO_ROW_MAJOR");
 
 namespace depthgrid {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/number_parsing.hpp"
@@ -57,7 +58,7 @@ class GeometryReader {
     }
   }
 
-  Corners corners;
+  [[nodiscard]] Corners taken() noexcept { return std::move(corners_); }
 
  private:
   [[nodiscard]] std::size_t whole_number(std::string_view word, const char* what) const {
@@ -70,7 +71,7 @@ class GeometryReader {
 
   [[nodiscard]] std::size_t whole_number(const pugi::xml_node& node, const char* name, std::size_t otherwise) const {
     const pugi::xml_attribute attribute = node.attribute(name);
-    return attribute ? whole_number(attribute.value(), name) : otherwise;
+    return !attribute.empty() ? whole_number(attribute.value(), name) : otherwise;
   }
 
   void read_positions(const pugi::xml_node& source) {
@@ -162,8 +163,8 @@ class GeometryReader {
     for (std::size_t k = 0; k < count; ++k) {
       face.push_back(positions_[list[begin + k]]);
     }
-    add_polygon(face, corners);
-    check_size(corners.size(), context_);
+    add_polygon(face, corners_);
+    check_size(corners_.size(), context_);
   }
 
   /// Faces of `size` corners each, or one face of all where `size` is 0.
@@ -203,6 +204,7 @@ class GeometryReader {
   pugi::xml_node mesh_;
   pugi::xml_node vertices_;
   const std::string& context_;
+  Corners corners_;
   Corners positions_;
 };
 
@@ -217,7 +219,7 @@ Corners geometry_corners(const pugi::xml_node& geometry, const std::string& cont
   for (const pugi::xml_node& primitive : mesh.children()) {
     reader.read(primitive);
   }
-  return std::move(reader.corners);
+  return reader.taken();
 }
 
 }  // namespace depthgrid::robot

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <string>
 
 #include "depthgrid/core/error.hpp"
@@ -58,8 +59,8 @@ std::vector<TreeLink> link_tree(const RobotDescription& robot) {
       next.pop_back();
       const std::size_t here = tree.size() - 1;
       const std::vector<std::size_t>& children = joints_from_link[tree[here].link];
-      for (auto joint = children.rbegin(); joint != children.rend(); ++joint) {
-        next.push_back({links.at(robot.joints[*joint].child_link), *joint, here});
+      for (const std::size_t joint : std::views::reverse(children)) {
+        next.push_back({links.at(robot.joints[joint].child_link), joint, here});
       }
     }
   };

@@ -62,7 +62,7 @@ class ColladaScene {
 
   [[nodiscard]] double unit_m() const {
     const pugi::xml_attribute metre = root_.child("asset").child("unit").attribute("meter");
-    const double unit = metre ? finite_number(metre.value()).value_or(0) : 1.0;
+    const double unit = !metre.empty() ? finite_number(metre.value()).value_or(0) : 1.0;
     if (!(unit > 0)) {
       fail(context_, "its unit is '", shown(metre.value()), "' m, must be a positive number");
     }

@@ -30,7 +30,7 @@ class ObjReader {
     }
   }
 
-  Corners corners;
+  [[nodiscard]] Corners taken() noexcept { return std::move(corners_); }
 
  private:
   [[nodiscard]] std::string place() const { return context_ + "line " + std::to_string(line_) + ": "; }
@@ -59,11 +59,12 @@ class ObjReader {
       }
       face.push_back(vertices_[static_cast<std::size_t>(*index > 0 ? *index - 1 : count + *index)]);
     }
-    add_polygon(face, corners);
-    check_size(corners.size(), context_);
+    add_polygon(face, corners_);
+    check_size(corners_.size(), context_);
   }
 
   const std::string& context_;
+  Corners corners_;
   std::size_t line_ = 0;
   Corners vertices_;
 };
@@ -88,7 +89,7 @@ Corners obj_corners(std::string_view text, const std::string& context) {
     }
   }
   reader.read_line(joined);
-  return std::move(reader.corners);
+  return reader.taken();
 }
 
 }  // namespace depthgrid::robot

@@ -20,7 +20,7 @@ struct JointMotion {
   Pose T_parent_axis = Pose::Identity();
   Eigen::Matrix3d R_axis_link = Eigen::Matrix3d::Identity();  ///< at position 0
 
-  Pose pose(double position) const {
+  [[nodiscard]] Pose pose(double position) const {
     Pose T_parent_link = T_parent_axis;
     Eigen::Matrix3d turned = R_axis_link;
     if (type == JointType::prismatic) {

@@ -56,7 +56,7 @@ std::optional<Vector> numbers_of(const pugi::xml_node& element, const char* name
     const std::string_view text = attribute.value();
     fail(context, "<", element.name(), " ", name, "='", shown(text), "'> must be ", result.size(), " finite number",
          result.size() > 1 ? "s" : "",
-         text.find("${") == text.npos ? "" : "; is this a xacro file? `xacro FILE > arm.urdf`");
+         text.find("${") == std::string_view::npos ? "" : "; is this a xacro file? `xacro FILE > arm.urdf`");
   }
   return result;
 }
@@ -77,7 +77,7 @@ void refuse_misspelt(const pugi::xml_node& element, std::initializer_list<std::s
 
 pugi::xml_node only_child(const pugi::xml_node& element, const char* name, const std::string& context) {
   const pugi::xml_node child = element.child(name);
-  if (child.next_sibling(name)) {
+  if (!child.next_sibling(name).empty()) {
     fail(context, "<", element.name(), "> has more than one <", name, ">, must have one");
   }
   return child;

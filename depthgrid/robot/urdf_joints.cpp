@@ -1,6 +1,7 @@
 #include "depthgrid/robot/urdf_joints.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -22,10 +23,10 @@ struct UrdfJoint {
 };
 
 void read_type(const pugi::xml_node& element, UrdfJoint& joint, const std::string& context) {
-  constexpr std::pair<std::string_view, JointType> kTypes[] = {{"fixed", JointType::fixed},
-                                                               {"revolute", JointType::revolute},
-                                                               {"continuous", JointType::continuous},
-                                                               {"prismatic", JointType::prismatic}};
+  constexpr std::array<std::pair<std::string_view, JointType>, 4> kTypes{{{"fixed", JointType::fixed},
+                                                                          {"revolute", JointType::revolute},
+                                                                          {"continuous", JointType::continuous},
+                                                                          {"prismatic", JointType::prismatic}}};
   const std::string_view type = element.attribute("type").value();
   for (const auto& [name, value] : kTypes) {
     if (type == name) {
@@ -146,16 +147,16 @@ void add_joints(const pugi::xml_node& element, RobotDescription& robot) {
   }
   std::set<std::string> left_out;
   for (const UrdfJoint& joint : joints) {
-    if (!joint.free.empty() && left_out.count(joint.description.parent_link) == 0) {
+    if (!joint.free.empty() && !left_out.contains(joint.description.parent_link)) {
       left_out.merge(empty_links_above(joint, joints, robot));
     }
   }
   for (UrdfJoint& joint : joints) {
-    if (left_out.count(joint.description.parent_link) == 0) {
+    if (!left_out.contains(joint.description.parent_link)) {
       robot.joints.push_back(std::move(joint.description));
     }
   }
-  std::erase_if(robot.links, [&left_out](const LinkDescription& link) { return left_out.count(link.name) > 0; });
+  std::erase_if(robot.links, [&left_out](const LinkDescription& link) { return left_out.contains(link.name); });
   resolve_mimics(robot);
 }
 

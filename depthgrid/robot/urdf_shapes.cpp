@@ -85,7 +85,7 @@ std::vector<LinkShape> shapes_of(const pugi::xml_node& link, const std::filesyst
       pugi::xml_node element;
       for (const pugi::xml_node& child : geometry.children()) {
         if (child.type() == pugi::node_element) {
-          if (element) {
+          if (!element.empty()) {
             fail(context, "a <geometry> holds <", shown(element.name()), "> and <", shown(child.name()),
                  ">, must hold one shape: write a <", kind, "> for each");
           }

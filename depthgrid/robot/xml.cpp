@@ -35,13 +35,13 @@ pugi::xml_node parse_xml(std::string_view text, const char* root, const std::str
     if (node.type() != pugi::node_element) {
       continue;
     }
-    if (found || std::string_view(node.name()) != root) {
-      fail(context, "its root is <", shown(node.name()), ">", found ? ", a second one" : "", ", must be one <", root,
-           ">");
+    if (!found.empty() || std::string_view(node.name()) != root) {
+      fail(context, "its root is <", shown(node.name()), ">", !found.empty() ? ", a second one" : "", ", must be one <",
+           root, ">");
     }
     found = node;
   }
-  if (!found) {
+  if (found.empty()) {
     fail(context, "has no element, must be one <", root, ">");
   }
   return found;

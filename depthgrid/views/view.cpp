@@ -1,6 +1,7 @@
 #include "depthgrid/views/view.hpp"
 
 #include <limits>
+#include <utility>
 
 #include "depthgrid/core/rounding.hpp"
 #include "depthgrid/core/usable_frame.hpp"
@@ -20,8 +21,8 @@ float pocket_m(const Policies& policies) noexcept {
 
 /// What is known of the camera, and the scratch memory of update().
 struct View::Preparation {
-  Preparation(const RigCamera& camera_in, const CameraMargins& margins, const Policies& policies)
-      : camera(camera_in),
+  Preparation(RigCamera camera_in, const CameraMargins& margins, const Policies& policies)
+      : camera(std::move(camera_in)),
         reading(camera.rule, camera.metres_per_unit, margins.sensor),
         radius_px(margins.sensor.lateral_px),
         pocket(pocket_m(policies)),

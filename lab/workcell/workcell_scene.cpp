@@ -54,6 +54,7 @@ WorkcellScene::WorkcellScene(simulation::Motion motion, std::uint64_t seed, ArmS
     link_bodies_.push_back(cell_.bodies.size());
     cell_.bodies.push_back(std::move(body));
   }
+  // NOLINTNEXTLINE(cppcoreguidelines-prefer-member-initializer): known only after the links
   person_body_ = cell_.bodies.size();
   const PersonState state = person_.at(0);
   cell_.bodies.push_back(simulation::capsule_body("person", BodyKind::person, state.parts_world));

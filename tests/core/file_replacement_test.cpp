@@ -39,6 +39,17 @@ TEST_F(ReplaceableFile, AbsentAndRegularFilesAreThemselves) {
   EXPECT_EQ(replaceable_file(folder_ / "old"), folder_ / "old");
 }
 
+TEST_F(ReplaceableFile, NothingIsLeftOfWhatWasNotFinished) {
+  const auto entries = [&] { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); };
+  {
+    FileReplacement one(folder_ / "file");
+    FileReplacement other(folder_ / "file");
+    std::fputs("x", one.stream());
+    EXPECT_EQ(entries(), 2) << "two writers have a name each";
+  }
+  EXPECT_EQ(entries(), 0);
+}
+
 TEST_F(ReplaceableFile, ALinkStandsForItsTarget) {
   std::ofstream(folder_ / "target") << "x";
   fs::create_symlink("target", folder_ / "link");

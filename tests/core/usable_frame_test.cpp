@@ -86,6 +86,18 @@ TEST(UsableFrame, IsTheSameToAll) {
   }
 }
 
+TEST(UsableFrame, RowsMayGoUpwards) {
+  const Wall wall;
+  Consumers all;
+  Frame frame = wall.frame();
+  frame.depth.data = wall.units.data() + kPixels - kWidth;
+  frame.depth.stride_bytes = -2 * kWidth;
+  all.expect(true, true, frame, "depth upwards");
+  frame = wall.frame();
+  frame.robot = {wall.near_m.data() + kPixels - kWidth, wall.far_m.data() + kPixels - kWidth, -kWidth};
+  all.expect(true, true, frame, "robot upwards");
+}
+
 TEST(UsableFrame, AStrideOfZeroIsThatOfRowsWithoutPadding) {
   Wall wall;
   // The first row shows other things than the rest.

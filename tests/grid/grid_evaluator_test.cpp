@@ -67,6 +67,17 @@ TEST(GridEvaluator, OneCameraSeesAnObstacleBehindTheRobotOnlyInCaseFour) {
   GridEvaluator removed(rig_of(1), 0, kCells, letter(RobotPixels::removed));
   ASSERT_TRUE(removed.update(0, scene.frame()).taken());
   EXPECT_EQ(removed.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
+  // What stands before the robot, or is read behind it, stays.
+  RobotBeforeWall hand;
+  RobotBeforeWall behind;
+  for (std::size_t i = 0; i < hand.depth_m.size(); ++i) {
+    hand.depth_m[i] = hand.near_m[i] > 0 ? 1.5F : hand.depth_m[i];
+    behind.depth_m[i] = behind.near_m[i] > 0 ? 2.3F : behind.depth_m[i];
+  }
+  ASSERT_TRUE(removed.update(0, hand.frame()).taken());
+  EXPECT_NEAR(removed.distance(Capsule::point({0, 0, 1.4})).nearest.distance_m, 0.1, 0.03);
+  ASSERT_TRUE(removed.update(0, behind.frame()).taken());
+  EXPECT_NEAR(removed.distance(Capsule::point({0, 0, 2.2})).nearest.distance_m, 0.1, 0.03);
   // A robot without an end frees nothing.
   RobotBeforeWall endless;
   std::fill(endless.far_m.begin(), endless.far_m.end(), std::numeric_limits<float>::infinity());
@@ -181,6 +192,15 @@ TEST(GridEvaluator, HasNoOtherCamerasAndTheyDoNotMove) {
   const FrameUpdate moved = evaluator.update(1, scene.frame(), rig.cameras[0].T_world_camera);
   EXPECT_EQ(moved.result, UpdateResult::unusable);
   EXPECT_THAT(moved.reason, HasSubstr("do not move"));
+
+  // A camera that is said to have moved has seen nothing, whatever it saw before.
+  GridEvaluator one(rig_of(1), 0, kCells, letter(RobotPixels::removed));
+  ASSERT_TRUE(one.update(0, scene.frame()).taken());
+  ASSERT_EQ(one.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
+  Pose elsewhere = Pose::Identity();
+  elsewhere.translation().x() = 1;
+  EXPECT_FALSE(one.update(0, scene.frame(), elsewhere).taken());
+  EXPECT_EQ(one.distance(kInRobot).nearest.distance_m, 0);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "depthgrid/robot/kuka_lwr4.hpp"
 #include "support/thrown_message.hpp"
 
@@ -21,6 +23,13 @@ TEST(RobotParts, BeginWithTheFlangeAndLeaveTheBaseOut) {
   for (const LinkCapsule& point : points) {
     EXPECT_EQ(point.capsule.radius_m, 0);
     EXPECT_EQ(point.capsule.a, point.capsule.b);
+  }
+  constexpr std::array<double, 9> kAlongLink_m{0, 0, 0.1, 0, 0.1, 0, 0.1, 0, 0.1};
+  constexpr std::array<const char*, 9> kLinks{"lwr_7_link", "lwr_6_link", "lwr_5_link", "lwr_5_link", "lwr_4_link",
+                                              "lwr_4_link", "lwr_3_link", "lwr_3_link", "lwr_2_link"};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(points[i].link, model.link_index(kLinks[i])) << i;
+    EXPECT_EQ(points[i].capsule.a, Eigen::Vector3d(0, 0, kAlongLink_m[i])) << i;
   }
   const auto capsules = moving_capsules(model);
   ASSERT_EQ(capsules.size(), 6U);
