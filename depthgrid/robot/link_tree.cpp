@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <ranges>
 #include <string>
 
 #include "depthgrid/core/error.hpp"
@@ -59,8 +58,8 @@ std::vector<TreeLink> link_tree(const RobotDescription& robot) {
       next.pop_back();
       const std::size_t here = tree.size() - 1;
       const std::vector<std::size_t>& children = joints_from_link[tree[here].link];
-      for (const std::size_t joint : std::views::reverse(children)) {
-        next.push_back({links.at(robot.joints[joint].child_link), joint, here});
+      for (std::size_t k = children.size(); k-- > 0;) {
+        next.push_back({links.at(robot.joints[children[k]].child_link), children[k], here});
       }
     }
   };
