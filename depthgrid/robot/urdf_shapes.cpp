@@ -25,7 +25,7 @@ double stated_length(const pugi::xml_node& shape, const char* name, const std::s
   return *value;
 }
 
-Shape box_of(const pugi::xml_node& element, const std::string& context) {
+BoxShape box_of(const pugi::xml_node& element, const std::string& context) {
   const auto size = vector_of(element, "size", context);
   if (!size || size->minCoeff() < 0) {
     fail(context, "size of a box is '", shown(element.attribute("size").value()), "', must be three lengths >= 0");
@@ -34,8 +34,8 @@ Shape box_of(const pugi::xml_node& element, const std::string& context) {
   return BoxShape{*size};
 }
 
-Shape mesh_of(const pugi::xml_node& element, const std::filesystem::path& file, const UrdfOptions& options,
-              const std::string& context) {
+MeshShape mesh_of(const pugi::xml_node& element, const std::filesystem::path& file, const UrdfOptions& options,
+                  const std::string& context) {
   const std::string name = name_of(element.attribute("filename"), "a mesh's file", context);
   const Eigen::Vector3d scale = vector_of(element, "scale", context).value_or(Eigen::Vector3d::Ones());
   if (!(scale.cwiseAbs().minCoeff() > 0)) {
@@ -50,8 +50,12 @@ std::optional<Shape> shape_of(const pugi::xml_node& element, const std::filesyst
                               const UrdfOptions& options, const std::string& context) {
   const std::string_view kind = element.name();
   refuse_misspelt(element, {"radius", "length", "size", "filename", "scale"}, context);
-  const auto unless_a_point = [](double extent_m, Shape shape) {
-    return extent_m > 0 ? std::optional<Shape>(std::move(shape)) : std::nullopt;
+  const auto unless_a_point = [](double extent_m, const auto& shape) {
+    std::optional<Shape> result;
+    if (extent_m > 0) {
+      result.emplace(shape);
+    }
+    return result;
   };
   if (kind == "sphere") {
     const double radius_m = stated_length(element, "radius", context);
@@ -60,12 +64,13 @@ std::optional<Shape> shape_of(const pugi::xml_node& element, const std::filesyst
   if (kind == "cylinder" || kind == "capsule") {
     const double radius_m = stated_length(element, "radius", context);
     const double length_m = stated_length(element, "length", context);
-    return unless_a_point(radius_m + length_m, kind == "capsule" ? Shape(CapsuleShape{radius_m, length_m})
-                                                                 : Shape(CylinderShape{radius_m, length_m}));
+    const double extent_m = radius_m + length_m;
+    return kind == "capsule" ? unless_a_point(extent_m, CapsuleShape{radius_m, length_m})
+                             : unless_a_point(extent_m, CylinderShape{radius_m, length_m});
   }
   if (kind == "box") {
-    const Shape box = box_of(element, context);
-    return unless_a_point(std::get<BoxShape>(box).size_m.maxCoeff(), box);
+    const BoxShape box = box_of(element, context);
+    return unless_a_point(box.size_m.maxCoeff(), box);
   }
   if (kind == "mesh") {
     return mesh_of(element, file, options, context);
