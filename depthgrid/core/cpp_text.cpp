@@ -53,11 +53,12 @@ std::string cpp_text(const Pose& pose) {
 }
 
 std::string cpp_text(const CameraMargins& margins) {
-  const auto& [sensor, translation_m, rotation_rad, half_exposure_s, time_uncertainty_s] = margins;
+  const auto& [sensor, translation_m, rotation_rad, half_exposure_s, time_uncertainty_s, smallest_m, second_view_x_m] =
+      margins;
   const auto& [constant_m, linear, quadratic_per_m, lateral_px] = sensor;
   return "depthgrid::CameraMargins{" + cpp_list(constant_m, linear, quadratic_per_m, lateral_px) + ", " +
          cpp_text(translation_m) + ", " + cpp_text(rotation_rad) + ", " + cpp_text(half_exposure_s) + ", " +
-         cpp_text(time_uncertainty_s) + "}";
+         cpp_text(time_uncertainty_s) + ", " + cpp_text(smallest_m) + ", " + cpp_text(second_view_x_m) + "}";
 }
 
 }  // namespace depthgrid

@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <climits>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -17,6 +20,41 @@ namespace {
 std::string temporary_suffix() {
   static std::atomic<unsigned> counter{0};
   return ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
+}
+
+/// A file under way. Its place never moves and is never freed, so that a signal handler may look at any time.
+struct Unfinished {
+  enum State : int { kFree, kClaimed, kInUse };
+  std::atomic<int> state{kFree};
+  std::array<char, PATH_MAX> path{};
+};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler reads it");
+
+/// More files at once are written all the same; only a signal would leave them behind.
+constexpr std::size_t kMostUnfinished = 16;
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler gets nothing handed over
+std::array<Unfinished, kMostUnfinished> unfinished;
+
+/// kMostUnfinished: there is no room, or the path is too long for the system anyway.
+std::size_t enter_unfinished(const std::string& path) noexcept {
+  if (path.size() >= PATH_MAX) {
+    return kMostUnfinished;
+  }
+  for (std::size_t entry = 0; entry < kMostUnfinished; ++entry) {
+    int expected = Unfinished::kFree;
+    if (unfinished[entry].state.compare_exchange_strong(expected, Unfinished::kClaimed)) {
+      *std::copy(path.begin(), path.end(), unfinished[entry].path.begin()) = '\0';
+      unfinished[entry].state.store(Unfinished::kInUse);
+      return entry;
+    }
+  }
+  return kMostUnfinished;
+}
+
+void leave_unfinished(std::size_t entry) noexcept {
+  if (entry < kMostUnfinished) {
+    unfinished[entry].state.store(Unfinished::kFree);
+  }
 }
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& file, int system_error) {
@@ -37,12 +75,23 @@ std::filesystem::path replaceable_file(const std::filesystem::path& path) {
   return path;
 }
 
+void remove_unfinished_files() noexcept {
+  for (const Unfinished& file : unfinished) {
+    if (file.state.load() == Unfinished::kInUse) {
+      static_cast<void>(::unlink(file.path.data()));
+    }
+  }
+}
+
 FileReplacement::FileReplacement(const std::filesystem::path& file) : file_(replaceable_file(file)), temporary_(file_) {
   temporary_ += temporary_suffix();
+  entry_ = enter_unfinished(temporary_.string());  // before the file is there
   // NOLINTNEXTLINE(cppcoreguidelines-prefer-member-initializer): the name must be complete first
   stream_ = std::fopen(temporary_.c_str(), "wb");
   if (stream_ == nullptr) {
-    fail_to_write(file_, errno);
+    const int reason = errno;
+    leave_unfinished(entry_);
+    fail_to_write(file_, reason);
   }
 }
 
@@ -52,6 +101,7 @@ FileReplacement::~FileReplacement() {
   }
   std::error_code ignored;  // after commit() there is nothing left to remove
   std::filesystem::remove(temporary_, ignored);
+  leave_unfinished(entry_);
 }
 
 void FileReplacement::commit() {

@@ -50,6 +50,24 @@ TEST_F(ReplaceableFile, NothingIsLeftOfWhatWasNotFinished) {
   EXPECT_EQ(entries(), 0);
 }
 
+/// As a signal handler does it: what is under way goes, what is finished and what others wrote stays.
+TEST_F(ReplaceableFile, UnfinishedFilesCanBeRemovedFromOutside) {
+  const auto entries = [&] { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); };
+  std::ofstream(folder_ / "other.tmp") << "x";
+  for (int turn = 0; turn < 40; ++turn) {  // more often than there are entries in the table
+    FileReplacement finished(folder_ / "finished");
+    std::fputs("y", finished.stream());
+    finished.commit();
+  }
+  FileReplacement one(folder_ / "file");
+  FileReplacement other(folder_ / "file");
+  EXPECT_EQ(entries(), 4);
+  remove_unfinished_files();
+  EXPECT_EQ(entries(), 2);
+  EXPECT_TRUE(fs::exists(folder_ / "finished"));
+  EXPECT_TRUE(fs::exists(folder_ / "other.tmp"));
+}
+
 TEST_F(ReplaceableFile, ALinkStandsForItsTarget) {
   std::ofstream(folder_ / "target") << "x";
   fs::create_symlink("target", folder_ / "link");
