@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/interval.hpp"
+#include "depthgrid/core/radial_distortion.hpp"
 
 namespace depthgrid {
 namespace {
@@ -14,41 +16,6 @@ namespace {
 /// scalings by whole factors, from dragging in the next pixel.
 constexpr double kSliver_px = 1e-6;
 
-/// Steps in which the radial function is checked for a fold.
-constexpr int kFoldSteps = 4096;
-
-/// The factor on the radius and its derivatives with respect to s = r^2. T is double or Interval.
-template <class T>
-struct Radial {
-  T factor, derivative, second_derivative, denominator;
-};
-
-template <class T>
-Radial<T> radial(const Distortion& distortion, const T& s) noexcept {
-  const auto& [k1, k2, p1, p2, k3, k4, k5, k6] = distortion.coefficients;
-  const T numerator = T(1.0) + s * (T(k1) + s * (T(k2) + s * T(k3)));
-  const T numerator_1 = T(k1) + s * (T(2.0 * k2) + s * T(3.0 * k3));
-  const T numerator_2 = T(2.0 * k2) + s * T(6.0 * k3);
-  const T denominator = T(1.0) + s * (T(k4) + s * (T(k5) + s * T(k6)));
-  const T denominator_1 = T(k4) + s * (T(2.0 * k5) + s * T(3.0 * k6));
-  const T denominator_2 = T(2.0 * k5) + s * T(6.0 * k6);
-  const T factor = numerator / denominator;
-  const T derivative = (numerator_1 - factor * denominator_1) / denominator;
-  const T second = (numerator_2 - T(2.0) * derivative * denominator_1 - factor * denominator_2) / denominator;
-  return {factor, derivative, second, denominator};
-}
-
-/// Encloses the radial function over s. The mean value form (value in the middle plus derivative times half the width)
-/// stays tight where large coefficients nearly cancel, which plain interval arithmetic does not.
-Radial<Interval> radial_over(const Distortion& distortion, const Interval& s) noexcept {
-  const Radial<double> middle = radial(distortion, 0.5 * (s.low + s.high));
-  Radial<Interval> all = radial(distortion, s);
-  const Interval offset(-0.5 * (s.high - s.low), 0.5 * (s.high - s.low));
-  all.derivative = Interval(middle.derivative) + all.second_derivative * offset;
-  all.factor = Interval(middle.factor) + all.derivative * offset;
-  return all;
-}
-
 /// Partial derivatives of the distorted coordinates over a box of undistorted ones.
 struct Jacobian {
   Interval xx, xy, yx, yy;
@@ -56,8 +23,8 @@ struct Jacobian {
 
 Jacobian jacobian(const Distortion& distortion, const Interval& x, const Interval& y,
                   const Radial<Interval>& r) noexcept {
-  const Interval p1 = distortion.coefficients[2];
-  const Interval p2 = distortion.coefficients[3];
+  const Interval p1 = tangential(distortion).p1;
+  const Interval p2 = tangential(distortion).p2;
   const Interval two = 2.0;
   const Interval six = 6.0;
   const Interval mixed = two * (x * y * r.derivative + p1 * x + p2 * y);
@@ -65,17 +32,21 @@ Jacobian jacobian(const Distortion& distortion, const Interval& x, const Interva
           r.factor + two * (square(y) * r.derivative + p2 * x) + six * p1 * y};
 }
 
-/// The squared radius up to which the radial function r R(r^2) surely grows, at most s_largest. Beyond a fold the model
-/// maps points that the lens never images back into the picture.
-double unfolded_squared_radius(const Distortion& distortion, double s_largest) noexcept {
-  for (int step = 0; step < kFoldSteps; ++step) {
-    const Interval s(s_largest * step / kFoldSteps, s_largest * (step + 1) / kFoldSteps);
-    const Radial<Interval> r = radial_over(distortion, s);
-    if (!((r.factor + Interval(2.0) * s * r.derivative).low > 0.0)) {
-      return s.low;
-    }
-  }
-  return s_largest;
+/// Whether a step of one pixel of the result is clearly less than one of the source, in some direction. The matrix of
+/// the derivatives is symmetric, so its smaller eigenvalue is the least that a step becomes.
+bool stretched(const Jacobian& j, double source_per_result) noexcept {
+  constexpr double kClearly = 0.95;
+  const double mixed = std::max(std::abs(j.xy.low), std::abs(j.xy.high));
+  return (std::min(j.xx.low, j.yy.low) - mixed) * source_per_result < kClearly;
+}
+
+/// Whether the image would hold some of these rays without a lens.
+bool seen_without_lens(const PinholeCamera& camera, const Interval& x, const Interval& y) noexcept {
+  const auto overlaps = [](const Interval& ray, double focal_px, double centre_px, int side_px) {
+    return ray.high * focal_px + centre_px > 0.0 && ray.low * focal_px + centre_px < side_px;
+  };
+  return overlaps(x, camera.fx_px, camera.cx_px, camera.width_px) &&
+         overlaps(y, camera.fy_px, camera.cy_px, camera.height_px);
 }
 
 /// Undistorted coordinates of one row or column of pixels of the result.
@@ -103,17 +74,59 @@ Range touched(const Interval& px, int side_px) noexcept {
   return {static_cast<int>(first), static_cast<int>(last)};
 }
 
+/// With as many pixels more on both sides; last < first when it leaves the image.
+Range widened(const Range& range, int by, int side_px) noexcept {
+  const bool inside = range.last >= 0 && range.first >= by && range.last + by < side_px;
+  return inside ? Range{range.first - by, range.last + by} : Range{0, -1};
+}
+
 }  // namespace
 
 bool distorts(const Distortion& distortion) noexcept {
   const auto& c = distortion.coefficients;
+  if (distortion.model == Distortion::Model::equidistant) {
+    return true;  // whatever the coefficients: such a lens is no pinhole
+  }
   return distortion.model != Distortion::Model::none &&
          std::any_of(c.begin(), c.end(), [](double coefficient) { return coefficient != 0; });
 }
 
+std::string_view to_string(Distortion::Model model) noexcept {
+  switch (model) {
+    case Distortion::Model::none:
+      return "none";
+    case Distortion::Model::plumb_bob:
+      return "plumb_bob";
+    case Distortion::Model::rational:
+      return "rational";
+    case Distortion::Model::equidistant:
+      break;
+  }
+  return "equidistant";
+}
+
+std::optional<Distortion::Model> distortion_model(std::string_view name) noexcept {
+  struct Named {
+    std::string_view name;
+    Distortion::Model model;
+  };
+  static constexpr std::array<Named, 11> kNames{{{"none", Distortion::Model::none},
+                                                 {"plumb_bob", Distortion::Model::plumb_bob},
+                                                 {"brown_conrady", Distortion::Model::plumb_bob},
+                                                 {"radtan", Distortion::Model::plumb_bob},
+                                                 {"radial-tangential", Distortion::Model::plumb_bob},
+                                                 {"rational", Distortion::Model::rational},
+                                                 {"rational_polynomial", Distortion::Model::rational},
+                                                 {"equidistant", Distortion::Model::equidistant},
+                                                 {"equi", Distortion::Model::equidistant},
+                                                 {"fisheye", Distortion::Model::equidistant},
+                                                 {"kannala_brandt4", Distortion::Model::equidistant}}};
+  const auto* found = std::find_if(kNames.begin(), kNames.end(), [&](const Named& one) { return one.name == name; });
+  return found != kNames.end() ? std::optional(found->model) : std::nullopt;
+}
+
 Distortion make_distortion(Distortion::Model model, std::span<const double> coefficients) {
-  constexpr std::array<const char*, 3> kNames{"none", "plumb_bob", "rational"};
-  const char* name = kNames[static_cast<std::size_t>(model)];
+  const std::string_view name = to_string(model);
   Distortion distortion;
   if (coefficients.size() > distortion.coefficients.size()) {
     fail("distortion ", name, ": ", coefficients.size(),
@@ -125,7 +138,7 @@ Distortion make_distortion(Distortion::Model model, std::span<const double> coef
     }
     if (model == Distortion::Model::none && coefficients[i] != 0.0) {
       fail("distortion none: coefficient ", i, " is ", coefficients[i],
-           ", must be 0; is the model plumb_bob or rational?");
+           ", must be 0; is the model plumb_bob, rational or equidistant?");
     }
     distortion.coefficients[i] = coefficients[i];
   }
@@ -134,6 +147,9 @@ Distortion make_distortion(Distortion::Model model, std::span<const double> coef
   }
   if (model == Distortion::Model::rational && coefficients.size() != 8) {
     fail("distortion rational: ", coefficients.size(), " coefficients given, must be 8 (k1 k2 p1 p2 k3 k4 k5 k6)");
+  }
+  if (model == Distortion::Model::equidistant && coefficients.size() != 4) {
+    fail("distortion equidistant: ", coefficients.size(), " coefficients given, must be 4 (k1 k2 k3 k4)");
   }
   distortion.model = model;
   return distortion;
@@ -145,28 +161,60 @@ Eigen::Vector2d distort(const Distortion& distortion, const Eigen::Vector2d& nor
   }
   const double x = normalised.x();
   const double y = normalised.y();
-  const double p1 = distortion.coefficients[2];
-  const double p2 = distortion.coefficients[3];
+  const auto [p1, p2] = tangential(distortion);
   const double s = x * x + y * y;
   const double factor = radial(distortion, s).factor;
   return {x * factor + 2.0 * p1 * x * y + p2 * (s + 2.0 * x * x),
           y * factor + p1 * (s + 2.0 * y * y) + 2.0 * p2 * x * y};
 }
 
+void refuse_fold(const PinholeCamera& camera, const Distortion& lens) {
+  if (lens.model != Distortion::Model::equidistant) {
+    return;
+  }
+  const auto farther = [](double centre_px, int side_px) { return std::max(centre_px, side_px - centre_px); };
+  const double corner = std::hypot(farther(camera.cx_px, camera.width_px) / camera.fx_px,
+                                   farther(camera.cy_px, camera.height_px) / camera.fy_px);
+  const auto& k = lens.coefficients;
+  constexpr int kSteps = 9000;  // hundredths of a degree, up to a right angle
+  constexpr double kStep_rad = 0.5 * std::numbers::pi / kSteps;
+  double before = 0.0;
+  for (int step = 1; step <= kSteps; ++step) {
+    const double theta = step * kStep_rad;
+    const double u = theta * theta;
+    const double image = theta * (1.0 + u * (k[0] + u * (k[1] + u * (k[2] + u * k[3]))));
+    if (!(image > before)) {
+      fail("distortion equidistant: the coefficients fold back ", 0.01 * step, " degrees off the axis, ",
+           std::lround(before * camera.fx_px),
+           " px from the principal point and inside the image, whose farthest corner is ",
+           std::lround(corner * camera.fx_px),
+           " px away; are they of another model (plumb_bob, rational), in another order, or for another image size?");
+    }
+    before = image;
+    if (image > corner) {
+      return;
+    }
+  }
+}
+
 DepthUndistortion::DepthUndistortion(const PinholeCamera& distorted, const Distortion& lens,
-                                     const PinholeCamera& undistorted)
+                                     const PinholeCamera& undistorted, int lateral_px)
     : source_width_px_(distorted.width_px),
       source_height_px_(distorted.height_px),
       width_px_(undistorted.width_px),
       height_px_(undistorted.height_px) {
   validate(distorted, "distorted camera");
   validate(undistorted, "undistorted camera");
+  refuse_fold(distorted, lens);
+  constexpr SourceWindow kOutside{0, 0, -1, -1};
   const Distortion distortion = lens.model == Distortion::Model::none ? Distortion{} : lens;
   const Interval x_all{pixel_interval(0, undistorted.fx_px, undistorted.cx_px).low,
                        pixel_interval(width_px_ - 1, undistorted.fx_px, undistorted.cx_px).high};
   const Interval y_all{pixel_interval(0, undistorted.fy_px, undistorted.cy_px).low,
                        pixel_interval(height_px_ - 1, undistorted.fy_px, undistorted.cy_px).high};
   const double s_unfolded = unfolded_squared_radius(distortion, (square(x_all) + square(y_all)).high);
+
+  const double source_per_result = std::min(distorted.fx_px / undistorted.fx_px, distorted.fy_px / undistorted.fy_px);
 
   windows_.reserve(static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_));
   for (int v = 0; v < height_px_; ++v) {
@@ -178,6 +226,10 @@ DepthUndistortion::DepthUndistortion(const PinholeCamera& distorted, const Disto
       const Jacobian j = jacobian(distortion, x, y, r);
       const Interval determinant = j.xx * j.yy - j.xy * j.yx;
       if (r.denominator.contains(0.0) || !std::isfinite(determinant.low) || !std::isfinite(determinant.high)) {
+        if (!seen_without_lens(distorted, x, y)) {  // the pole of a rational model, far outside what the lens images
+          windows_.push_back(kOutside);
+          continue;
+        }
         fail("distortion: the model is not finite at pixel (", u, ", ", v, ") of the undistorted image (x/z = ", x.low,
              ", y/z = ", y.low, "); check the order of the coefficients or choose a narrower undistorted image");
       }
@@ -188,13 +240,14 @@ DepthUndistortion::DepthUndistortion(const PinholeCamera& distorted, const Disto
           Interval(distorted.fx_px) * enclose(centre.x(), j.xx, half_x, j.xy, half_y) + distorted.cx_px;
       const Interval y_px =
           Interval(distorted.fy_px) * enclose(centre.y(), j.yx, half_x, j.yy, half_y) + distorted.cy_px;
-      const Range columns = touched(x_px, source_width_px_);
-      const Range rows = touched(y_px, source_height_px_);
+      const int beside_px = stretched(j, source_per_result) ? lateral_px : 0;
+      const Range columns = widened(touched(x_px, source_width_px_), beside_px, source_width_px_);
+      const Range rows = widened(touched(y_px, source_height_px_), beside_px, source_height_px_);
       const bool imaged = s.high <= s_unfolded && determinant.low > 0.0 && columns.last >= 0 && rows.last >= 0;
       windows_.push_back(
           imaged ? SourceWindow{static_cast<std::int16_t>(columns.first), static_cast<std::int16_t>(rows.first),
                                 static_cast<std::int16_t>(columns.last), static_cast<std::int16_t>(rows.last)}
-                 : SourceWindow{0, 0, -1, -1});
+                 : kOutside);
     }
   }
 }
@@ -217,6 +270,19 @@ void DepthUndistortion::apply(const DepthImage& source, DepthImage& result) cons
     }
     result.data()[i] = depth_m;
   }
+}
+
+std::vector<bool> DepthUndistortion::pixels_read() const {
+  std::vector<bool> read(static_cast<std::size_t>(source_width_px_) * static_cast<std::size_t>(source_height_px_));
+  for (const SourceWindow& window : windows_) {
+    for (int v = window.v_first; v <= window.v_last; ++v) {
+      for (int u = window.u_first; u <= window.u_last; ++u) {
+        read[static_cast<std::size_t>(v) * static_cast<std::size_t>(source_width_px_) + static_cast<std::size_t>(u)] =
+            true;
+      }
+    }
+  }
+  return read;
 }
 
 }  // namespace depthgrid
