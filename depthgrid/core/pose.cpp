@@ -22,10 +22,23 @@ Pose pose_from_matrix(const Eigen::Matrix4d& matrix, const char* name) {
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double deviation = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(deviation <= kRotationTolerance)) {
-    fail(name, ": rotation deviates from orthonormal by ", deviation, ", must be at most ", kRotationTolerance);
+    constexpr double kRounding = 0.01;
+    const double scale = std::cbrt(std::abs(rotation.determinant()));
+    const Eigen::Matrix3d turn = scale > 0 ? Eigen::Matrix3d(rotation / scale) : rotation;
+    const bool scaled = (turn.transpose() * turn - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kRounding &&
+                        std::abs(scale - 1) > kRounding;
+    std::ostringstream hint;
+    if (scaled) {
+      hint << "; it is scaled by " << scale << ": divide its nine numbers by that";
+    }
+    fail(name, ": rotation deviates from orthonormal by ", deviation, ", must be at most ", kRotationTolerance,
+         scaled ? hint.str() : "; with too few digits, or not a rotation?");
   }
   if (rotation.determinant() < 0) {
-    fail(name, ": rotation has determinant ", rotation.determinant(), ", must be +1 (right-handed frames)");
+    fail(name, ": rotation has determinant ", rotation.determinant(),
+         ", must be +1 (right-handed frames): one axis is turned round; where y is up in camera and world (ICL-NUIM), "
+         "change "
+         "the signs of the second row and of the second column, and of y in all points");
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Pose pose = Pose::Identity();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/plausibility.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 
 namespace depthgrid {
@@ -49,9 +50,7 @@ void validate(const Rig& rig) {
     const std::string name = "camera '" + camera.id + "'";
     validate(camera.intrinsics, name.c_str());
     validate(camera.rule, name.c_str());
-    if (!(std::isfinite(camera.metres_per_unit) && camera.metres_per_unit > 0)) {
-      fail(name, ": metres_per_unit is ", camera.metres_per_unit, ", must be a positive finite number");
-    }
+    check_plausible_scale(camera.metres_per_unit, name.c_str());
     check_pose(camera.T_world_camera, name + ": T_world_camera");
     if (camera.margins) {
       validate(*camera.margins, name.c_str());

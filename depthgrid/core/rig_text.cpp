@@ -4,18 +4,6 @@
 namespace depthgrid {
 namespace {
 
-const char* name_of(Distortion::Model model) noexcept {
-  switch (model) {
-    case Distortion::Model::none:
-      return "none";
-    case Distortion::Model::plumb_bob:
-      return "plumb_bob";
-    case Distortion::Model::rational:
-      break;
-  }
-  return "rational";
-}
-
 /// The structured bindings do not compile once there is another member.
 std::string camera_text(const RigCamera& camera) {
   const auto& [id, intrinsics, distortion, metres_per_unit, rule, T_world_camera, sensor, margins] = camera;
@@ -24,11 +12,11 @@ std::string camera_text(const RigCamera& camera) {
   const auto& [near_m, far_m, clamp_beyond_far, invalid_units] = rule;
   return "{.id = " + cpp_text(id) +
          ",\n     .intrinsics = " + cpp_list(width_px, height_px, fx_px, fy_px, cx_px, cy_px) +
-         ",\n     .distortion = {depthgrid::Distortion::Model::" + name_of(model) + ", " + cpp_range(coefficients) +
-         "},\n     .metres_per_unit = " + cpp_text(metres_per_unit) + ",\n     .rule = {" + cpp_text(near_m) + ", " +
-         cpp_text(far_m) + ", " + cpp_text(clamp_beyond_far) + ", " + cpp_range(invalid_units) +
-         "},\n     .T_world_camera = " + cpp_text(T_world_camera) + ",\n     .sensor = " + cpp_text(sensor) +
-         ",\n     .margins = " + cpp_text(margins) + "}";
+         ",\n     .distortion = {depthgrid::Distortion::Model::" + std::string(to_string(model)) + ", " +
+         cpp_range(coefficients) + "},\n     .metres_per_unit = " + cpp_text(metres_per_unit) + ",\n     .rule = {" +
+         cpp_text(near_m) + ", " + cpp_text(far_m) + ", " + cpp_text(clamp_beyond_far) + ", " +
+         cpp_range(invalid_units) + "},\n     .T_world_camera = " + cpp_text(T_world_camera) +
+         ",\n     .sensor = " + cpp_text(sensor) + ",\n     .margins = " + cpp_text(margins) + "}";
 }
 
 }  // namespace
