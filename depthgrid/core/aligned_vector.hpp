@@ -2,24 +2,24 @@
 #pragma once
 
 #include <cstddef>
-#include <new>
 #include <vector>
+
+#include "depthgrid/core/line_memory.hpp"
 
 namespace depthgrid {
 
 template <class Value>
 struct CacheLineAllocator {
   using value_type = Value;
-  static constexpr std::align_val_t kAlignment{64};
 
   CacheLineAllocator() = default;
   template <class Other>
   explicit(false) CacheLineAllocator(const CacheLineAllocator<Other>& /*other*/) noexcept {}
 
   [[nodiscard]] Value* allocate(std::size_t count) {
-    return static_cast<Value*>(::operator new(count * sizeof(Value), kAlignment));
+    return static_cast<Value*>(allocate_lines(count * sizeof(Value)));
   }
-  void deallocate(Value* values, std::size_t /*count*/) noexcept { ::operator delete(values, kAlignment); }
+  void deallocate(Value* values, std::size_t count) noexcept { free_lines(values, count * sizeof(Value)); }
   friend bool operator==(const CacheLineAllocator& /*a*/, const CacheLineAllocator& /*b*/) noexcept { return true; }
 };
 

@@ -5,6 +5,7 @@
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/plausibility.hpp"
 #include "depthgrid/core/rounding.hpp"
 
 namespace depthgrid {
@@ -77,9 +78,7 @@ const Pixel* row(const DepthView& view, int v) noexcept {
 DepthView depth_view(std::span<const std::uint16_t> pixels, int width_px, int height_px, double metres_per_unit,
                      std::ptrdiff_t stride_bytes) {
   check_layout(pixels.size(), sizeof(std::uint16_t), width_px, height_px, stride_bytes);
-  if (!(std::isfinite(metres_per_unit) && metres_per_unit > 0)) {
-    fail("depth image: metres_per_unit is ", metres_per_unit, ", must be a positive finite number");
-  }
+  check_plausible_scale(metres_per_unit);
   return {pixels.data(), DepthFormat::uint16_units, width_px, height_px, stride_bytes, metres_per_unit};
 }
 

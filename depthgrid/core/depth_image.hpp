@@ -36,7 +36,7 @@ struct DepthView {
 };
 
 /// View on 16-bit depth. `stride_bytes` = 0 means rows without padding. Throws Error when the buffer is
-/// too small for width, height and stride, the stride is odd or shorter than a row, or the scale is not positive.
+/// too small for width, height and stride, the stride is odd or shorter than a row, or as check_plausible_scale().
 DepthView depth_view(std::span<const std::uint16_t> pixels, int width_px, int height_px, double metres_per_unit,
                      std::ptrdiff_t stride_bytes = 0);
 

@@ -9,6 +9,8 @@
 #include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/frame_update.hpp"
+#include "depthgrid/core/impossible_surfaces.hpp"
+#include "depthgrid/core/past.hpp"
 #include "depthgrid/core/pose.hpp"
 
 namespace depthgrid {
@@ -24,6 +26,18 @@ class DistanceEvaluator {
 
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
   [[nodiscard]] virtual std::size_t camera_count() const noexcept = 0;
+  /// Exposure of the camera's image behind the newest answers, seconds on the frames' clock; NaN where there is none,
+  /// or it has no time. For the thread that evaluates.
+  [[nodiscard]] virtual double image_time_s(std::size_t camera) const noexcept = 0;
+
+  /// What the evaluator's memory found impossible so far, as of the newest answers; nothing where it has no memory. It
+  /// stays at 0 images unless something that was declared is not true: tell a person. For the thread that evaluates.
+  [[nodiscard]] virtual ImpossibleSurfaces impossible() const noexcept { return {}; }
+
+  /// What the evaluator's memory knows of an answer's nearest point: since when something may be there, and from where.
+  /// By the newest image; not_told without a memory, and of surfaces that are measured. reason_text() makes words of
+  /// it. For one thread at a time; others may update and evaluate meanwhile.
+  [[nodiscard]] virtual Past past(const Proximity& /*nearest*/) const noexcept { return {}; }
 
   /// A camera's newest image; its buffers need not outlive the call. With `T_world_camera` the camera has moved,
   /// without it stands where the rig says. `camera` beyond the rig is `unusable`.

@@ -13,7 +13,7 @@ enum class UpdateResult : std::uint8_t {
 
 struct FrameUpdate {
   UpdateResult result = UpdateResult::taken;
-  const char* reason = nullptr;  ///< why it was not taken, a static string; null: it was
+  const char* reason = "";  ///< why it was not taken, a static string; empty: it was
 
   [[nodiscard]] bool taken() const noexcept { return result == UpdateResult::taken; }
 };

@@ -31,16 +31,25 @@ HWY_INLINE std::uint32_t bits_of(M mask) {
   return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8U;
 }
 
+// Of any number of lanes.
+
 /// A row of a matrix times (x, y, z).
-HWY_INLINE V weighted(const float* HWY_RESTRICT row, V x, V y, V z) {
-  const Floats d;
+template <class W>
+HWY_INLINE W weighted(const float* HWY_RESTRICT row, W x, W y, W z) {
+  const hn::DFromV<W> d;
   return hn::Add(hn::Add(hn::Mul(hn::Set(d, row[0]), x), hn::Mul(hn::Set(d, row[1]), y)),
                  hn::Mul(hn::Set(d, row[2]), z));
 }
 
-HWY_INLINE V length(V x, V y, V z) { return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z))); }
+template <class W>
+HWY_INLINE W length(W x, W y, W z) {
+  return hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+}
 
-HWY_INLINE V clamp(V x, V low, V high) { return hn::Min(hn::Max(x, low), high); }
+template <class W>
+HWY_INLINE W clamp(W x, W low, W high) {
+  return hn::Min(hn::Max(x, low), high);
+}
 
 }  // namespace depthgrid::lanes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

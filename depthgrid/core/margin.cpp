@@ -112,6 +112,10 @@ void validate(const CameraMargins& margins, const char* name) {
   check_part(name, "rotation", margins.rotation_rad, " rad");
   check_part(name, "half exposure", margins.half_exposure_s, " s");
   check_part(name, "time uncertainty", margins.time_uncertainty_s, " s");
+  if (!std::isnan(margins.smallest_obstacle_m)) {
+    check_part(name, "smallest obstacle", margins.smallest_obstacle_m, " m");
+  }
+  check_part(name, "distance of the second view", std::abs(margins.second_view_x_m), " m");
 }
 
 FreeDepth::FreeDepth(int width_px, int height_px, const SensorMargin& margin)

@@ -1,6 +1,8 @@
 // Margins that turn a measured depth into the depth up to which space is known to be free.
 #pragma once
 
+#include <limits>
+
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/core/frame.hpp"
 
@@ -16,27 +18,43 @@ struct SensorMargin {
 };
 
 /// Calibration and time: e(x) = translation_m + rotation_rad |x - camera centre| + time_m, where
-/// time_m = v_max (|t_k - t_ref| + half the exposure + time-stamp uncertainty). A point is known free to a camera only
-/// if the whole ball of radius e around it is free in that camera.
+/// time_m = motion_margin_m() of v_max (|t_k - t_ref| + half the exposure + time-stamp uncertainty). A point is known
+/// free to a camera only if the whole ball of radius e around it is free in that camera.
 struct PoseMargin {
   double translation_m = 0.0;
   double rotation_rad = 0.0;
   double time_m = 0.0;
 };
 
-/// What is known of the errors of one camera and its clock. Together with the fastest obstacle this gives a PoseMargin.
+/// What is known of the errors of one camera and its clock, which together with the fastest obstacle gives a
+/// PoseMargin; and what is assumed of obstacles where it has no reading.
 struct CameraMargins {
   SensorMargin sensor;            ///< m_k and w_k
   double translation_m = 0;       ///< calibration: the camera's position
   double rotation_rad = 0;        ///< calibration: the camera's orientation
   double half_exposure_s = 0;     ///< half the time in which one image is taken
   double time_uncertainty_s = 0;  ///< error of the time stamp
+  /// s: every obstacle is a union of balls of this diameter, metres, so a small hole in the image may count as what
+  /// surrounds it (docs/smallest-obstacle.md). What is smaller may be missed where it gives no reading. 0: nothing is
+  /// assumed, a pixel without reading frees nothing. NaN: not declared, which the search refuses.
+  double smallest_obstacle_m = std::numeric_limits<double>::quiet_NaN();
+  /// Where the sensor's second view stands, its projector or other imager, along the image's x axis: metres, positive
+  /// to the right. Then the shadow bands of near things, in which the sensor cannot measure, count as what may be
+  /// hidden there. For images as the sensor computed them only; in those that were registered to another camera the
+  /// bands lie elsewhere. 0: bands are holes like others.
+  double second_view_x_m = 0;
 };
 
-/// Throws Error unless all parts are finite and not negative and lateral_px is in [0, 16].
+/// Throws Error unless all parts are finite and not negative (a smallest obstacle that is not declared passes, and the
+/// second view may stand to the left) and lateral_px is in [0, 16].
 void validate(const SensorMargin& margin, const char* name = "sensor margin");
 void validate(const PoseMargin& margin, const char* name = "pose margin");
 void validate(const CameraMargins& margins, const char* name = "camera margins");
+
+/// What a way that something may have gone adds to e, metres: from there the camera's rotation error turns it by more.
+[[nodiscard]] inline double motion_margin_m(const CameraMargins& margins, double way_m) noexcept {
+  return way_m * (1 + margins.rotation_rad);
+}
 
 /// m(D) for a measured depth, metres.
 [[nodiscard]] inline double depth_margin_m(const SensorMargin& margin, double depth_m) noexcept {

@@ -25,6 +25,22 @@ std::string_view to_string(ProximityState state) noexcept {
   return "invalid";
 }
 
+std::string_view to_string(Unmeasured why) noexcept {
+  switch (why) {
+    case Unmeasured::not_told:
+      return "not_told";
+    case Unmeasured::no_reading:
+      return "no_reading";
+    case Unmeasured::image_edge:
+      return "image_edge";
+    case Unmeasured::blind_zone:
+      return "blind_zone";
+    case Unmeasured::late_image:
+      return "late_image";
+  }
+  return "invalid";
+}
+
 bool has_distance(const Proximity& answer) noexcept { return !std::isnan(answer.distance_m); }
 
 double lower_bound_after(const Proximity& answer, double elapsed_s, double v_max_m_s) noexcept {

@@ -21,8 +21,23 @@ enum class ProximityState : std::uint8_t {
   beyond_rho,     ///< nothing within rho: distance is rho, a lower bound; there is no nearest point
 };
 
+/// Why a camera that looks at a place says nothing of it: the first that holds for any camera.
+enum class Unmeasured : std::uint8_t {
+  not_told,    ///< the state is another one
+  no_reading,  ///< pixels without a reading there, or beside it as far as the filter or the camera's errors reach
+  image_edge,  ///< so near the image's edge that the filter or the camera's errors leave it
+  blind_zone,  ///< nearer to the camera than it measures
+  late_image,  ///< the camera's image is too old
+};
+
+/// Of two cameras' reasons the one that comes first; the other where one is not told.
+[[nodiscard]] constexpr Unmeasured first_of(Unmeasured a, Unmeasured b) noexcept {
+  return a == Unmeasured::not_told ? b : b == Unmeasured::not_told || a < b ? a : b;
+}
+
 /// The state's name as it stands in CSV and JSON, for instance "beyond_rho".
 [[nodiscard]] std::string_view to_string(ProximityState state) noexcept;
+[[nodiscard]] std::string_view to_string(Unmeasured why) noexcept;
 
 /// Distance from a point to the nearest obstacle: metres, world frame.
 struct Proximity {
@@ -38,6 +53,8 @@ struct Proximity {
   ProximityState state = ProximityState::not_evaluated;
   /// The camera that measured the nearest point (index in the rig); only at `measured`.
   std::optional<std::uint16_t> camera;
+  /// Only at `unmeasured`.
+  Unmeasured unmeasured = Unmeasured::not_told;
   /// Distance from the point to the border of the space of interest where the space outside is ignored: obstacles
   /// farther away than this may be missing from the answer. NaN where it does not apply.
   double known_to_m = kNaN;

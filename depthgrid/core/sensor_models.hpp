@@ -38,6 +38,12 @@ struct SensorModel {
   std::optional<double> half_exposure_s;
   /// Error of a time stamp taken as the model's page says; none: not known.
   std::optional<double> time_uncertainty_s;
+  /// What CameraMargins::smallest_obstacle_m may be where nothing speaks against it, metres: at the image's full width.
+  /// It says something of obstacles, not of the sensor, so sensor_margins() does not declare it.
+  double smallest_obstacle_m = 0;
+  /// CameraMargins::second_view_x_m of images as the sensor computed them; 0: it has none. Whether images were
+  /// registered to another camera is not the model's to say, so sensor_margins() leaves it out, too.
+  double second_view_x_m = 0;
 };
 
 /// All models. The first one is "ideal": no noise, as rendered images have it.
@@ -48,8 +54,8 @@ struct SensorModel {
 
 /// The errors of one camera of this model. `camera` as calibrated for its depth images, not for images that were
 /// registered to another camera; `metres_per_unit` of its 16-bit images. What the model does not know, and everything
-/// that is a matter of calibration, is 0. The range is not among them: readings beyond it are believed unless
-/// RigCamera::rule is set to model.rule.
+/// that is a matter of calibration, is 0. Not among them: the range, so readings beyond it are believed unless
+/// RigCamera::rule is set to model.rule; the smallest obstacle, which stays undeclared; and the second view.
 [[nodiscard]] CameraMargins sensor_margins(const SensorModel& model, const PinholeCamera& camera,
                                            double metres_per_unit) noexcept;
 

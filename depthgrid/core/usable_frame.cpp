@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 namespace depthgrid {
 
@@ -38,6 +39,11 @@ const char* why_unusable(const Frame& frame, const RigCamera& camera) noexcept {
   }
   if (robot.near_m != nullptr && robot.stride_px != 0 && std::abs(robot.stride_px) < depth.width_px) {
     return "the robot view's rows overlap: the stride is less than a row";
+  }
+  const double inf = std::numeric_limits<double>::infinity();
+  if (robot.near_m != nullptr &&
+      (robot.blind_m < 0 || robot.blind_m == inf || robot.reach_m < 0 || robot.reach_m == inf)) {
+    return "the robot view's blind layer or reach is negative or infinite";
   }
   return nullptr;
 }

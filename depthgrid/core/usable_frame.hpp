@@ -11,7 +11,7 @@ namespace depthgrid {
 [[nodiscard]] const char* why_unusable(const DepthView& depth, const PinholeCamera& camera) noexcept;
 
 /// Why nothing can be measured in this frame of the camera: the same, another depth scale than the camera's, half a
-/// robot view, or one whose rows overlap. Null: it can be used.
+/// robot view, or one whose rows overlap or whose blind layer is no thickness. Null: it can be used.
 [[nodiscard]] const char* why_unusable(const Frame& frame, const RigCamera& camera) noexcept;
 
 /// The same with the stride written out that 0 stands for: rows without padding.

@@ -101,7 +101,7 @@ TEST(NoAllocation, UndistortionApply) {
   DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
   const PinholeCamera camera{64, 48, 50, 50, 32, 24};
   const DepthUndistortion undistortion(
-      camera, make_distortion(Distortion::Model::plumb_bob, std::array{-0.1, 0.01, 0.001, 0.0, 0.0}), camera);
+      camera, make_distortion(Distortion::Model::plumb_bob, std::array{-0.1, 0.01, 0.001, 0.0, 0.0}), camera, 0);
   const DepthImage source(64, 48);
   DepthImage result(64, 48);
   const AllocationGuard guard;

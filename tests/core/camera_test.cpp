@@ -146,7 +146,11 @@ TEST(BrokenPose, NamesValueAndRule) {
   };
   Matrix3d mirrored = some_rotation();
   mirrored.col(0) *= -1;
-  EXPECT_EQ(message(matrix_of(mirrored)), "T_world_cam: rotation has determinant -1, must be +1 (right-handed frames)");
+  EXPECT_EQ(
+      message(matrix_of(mirrored)),
+      "T_world_cam: rotation has determinant -1, must be +1 (right-handed frames): one axis is turned round; "
+      "where y is up in camera and world (ICL-NUIM), change the signs of the second row and of the second column, and "
+      "of y in all points");
   Matrix4d broken = matrix_of(some_rotation());
   broken(1, 2) = kNaN;
   EXPECT_EQ(message(broken), "T_world_cam: entry (1, 2) is nan, must be a finite number");
@@ -209,11 +213,12 @@ TEST(BrokenRig, NamesValueAndRule) {
             "rig 'cell': camera id 'left' occurs twice, ids must be distinct");
   EXPECT_EQ(message([](Rig& r) { r.cameras[0].id.clear(); }), "rig 'cell': a camera has an empty id");
   EXPECT_EQ(message([](Rig& r) { r.cameras[1].metres_per_unit = 0; }),
-            "camera 'right': metres_per_unit is 0, must be a positive finite number");
+            "camera 'right': metres_per_unit is 0, must be between 1e-06 and 0.01; did you mean 0.001 (images in "
+            "millimetres)?");
   EXPECT_EQ(message([](Rig& r) { r.cameras[1].rule.far_m = 0; }),
             "camera 'right': far is 0 m, must be greater than near (0 m)");
   EXPECT_THAT(message([](Rig& r) { r.cameras[1].T_world_camera.linear() *= 2; }),
-              HasSubstr("camera 'right': T_world_camera: rotation deviates"));
+              HasSubstr("camera 'right': T_world_camera: rotation deviates from orthonormal by 3"));
 }
 
 }  // namespace

@@ -110,10 +110,11 @@ TEST(DepthView, IsNoCopy) {
 TEST(DepthView, PaddedRows) {
   // 3 x 2 pixels, each row followed by padding that must not be read as depth; the last row needs none.
   const std::vector<std::uint16_t> pixels{1, 2, 3, 9999, 9999, 4, 5, 6};
-  const DepthView view = depth_view(pixels, 3, 2, 1.0, 10);
+  const DepthView view = depth_view(pixels, 3, 2, 0.001, 10);
   DepthImage image(3, 2);
   normalise(view, {}, image);
-  EXPECT_EQ(std::vector<float>(image.data(), image.data() + 6), (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(std::vector<float>(image.data(), image.data() + 6),
+            (std::vector<float>{0.001F, 0.002F, 0.003F, 0.004F, 0.005F, 0.006F}));
 }
 
 TEST(DepthView, SubImageOfALargerBuffer) {
@@ -168,6 +169,10 @@ TEST(BrokenDepthView, NamesValueAndRule) {
   const auto message = [&units](int width_px, int height_px, double scale, std::ptrdiff_t stride_bytes) {
     return test::thrown_message([&] { (void)depth_view(units, width_px, height_px, scale, stride_bytes); });
   };
+  const auto kScaleOf = [](const std::string& value) {
+    return "depth image: metres_per_unit is " + value +
+           ", must be between 1e-06 and 0.01; did you mean 0.001 (images in millimetres)?";
+  };
   EXPECT_EQ(message(4, 3, 0.001, 0), "");
   EXPECT_EQ(message(4, 4, 0.001, 0), "depth image: buffer has 24 bytes, 4 x 4 pixels with a stride of 8 bytes need 32");
   EXPECT_EQ(message(4, 3, 0.001, 10),
@@ -182,9 +187,15 @@ TEST(BrokenDepthView, NamesValueAndRule) {
   EXPECT_EQ(message(4, -3, 0.001, 0), "depth image: size is 4 x -3 px, each side must be between 1 and 16384");
   EXPECT_EQ(message(1 << 30, 1 << 30, 0.001, 0),
             "depth image: size is 1073741824 x 1073741824 px, each side must be between 1 and 16384");
-  EXPECT_EQ(message(4, 3, 0.0, 0), "depth image: metres_per_unit is 0, must be a positive finite number");
-  EXPECT_EQ(message(4, 3, -0.001, 0), "depth image: metres_per_unit is -0.001, must be a positive finite number");
-  EXPECT_EQ(message(4, 3, kNaN, 0), "depth image: metres_per_unit is nan, must be a positive finite number");
+  EXPECT_EQ(message(4, 3, 0.0, 0), kScaleOf("0"));
+  EXPECT_EQ(message(4, 3, -0.001, 0), kScaleOf("-0.001"));
+  EXPECT_EQ(message(4, 3, kNaN, 0), kScaleOf("nan"));
+  EXPECT_EQ(message(4, 3, 1.0, 0), kScaleOf("1"));
+  // What other tools call depth_scale or DepthMapFactor is the inverse.
+  EXPECT_EQ(message(4, 3, 5000, 0),
+            "depth image: metres_per_unit is 5000, must be between 1e-06 and 0.01; did you mean 0.0002 (metres of one "
+            "unit, not units of one metre)?");
+  EXPECT_EQ(message(4, 3, 0.01, 0), "");
   EXPECT_EQ(
       message(4, 3, 0.001, std::numeric_limits<std::ptrdiff_t>::max() - 1),
       "depth image: buffer has 24 bytes, 4 x 3 pixels with a stride of 9223372036854775806 bytes need 1.844674407e+19");

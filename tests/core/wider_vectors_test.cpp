@@ -30,7 +30,7 @@ TEST(WiderVectors, TheLibraryAnswersAProgramForANewerProcessor) {
   views::Settings settings;
   settings.space = views::BoxSpace{{-3, -3, -3}, {3, 3, 3}};
   settings.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::obstacle, 0};
-  settings.margins.resize(3);
+  settings.margins.resize(3, CameraMargins{.sensor = {}, .smallest_obstacle_m = 0});
   settings.v_max_m_s = 0;
   views::ViewStore store(rig, settings);
   const std::vector<float> wall_m(64 * 48, 2.0F);
