@@ -28,9 +28,10 @@ Frame FrameIntake::frame(std::size_t camera, const Frame& seen, const Pose& T_wo
     return {};
   }
   const ExposedRobot robot = robots_[camera]->find(seen.time_s, T_world_camera, &seen.depth);
-  report_[camera] = {robot.joints,
-                     robot.view.near_m != nullptr && why_unusable(seen.depth, cameras_[camera].intrinsics) == nullptr};
-  return {seen.depth, robot.view, seen.time_s};
+  const Frame result{seen.depth, robot.view, seen.time_s};
+  const bool removed = robot.view.near_m != nullptr && why_unusable(result, cameras_[camera]) == nullptr;
+  report_[camera] = {robot.joints, removed, removed ? robot.view.blind_m : 0.0};
+  return result;
 }
 
 std::span<const Frame> FrameIntake::frames(std::span<const Frame> seen) noexcept {

@@ -17,7 +17,8 @@ namespace depthgrid::robot {
 /// What became of the robot in a camera's last image.
 struct IntakeReport {
   JointsAtTime joints;         ///< of the exposure, or why they are not known
-  bool robot_removed = false;  ///< false: the robot is its own obstacle in this image
+  bool robot_removed = false;  ///< false: the robot is its own obstacle in this image, or nobody can use it
+  double blind_m = 0;          ///< RobotView::blind_m of what was removed; 0 where nothing was
 };
 
 /// The robot in all cameras of a rig.

@@ -67,6 +67,100 @@ bool JointHistory::add_positions(std::uint64_t sample, double a, double b, std::
   return there && slot.version.load(std::memory_order_relaxed) == 2 * sample + 2;
 }
 
+namespace {
+
+/// How far a joint that moves at most so far in the time between two samples, and has moved so far, may leave the line
+/// between them: V h away and back on the other side, (V^2 h^2 - dq^2) / (2 V h). Where it has moved farther than that
+/// V was wrong, and says nothing.
+double off_line_by_speed(double most, double moved) noexcept {
+  if (std::abs(moved) > most * (1 + 1e-9)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double share = most > 0 ? std::min(1.0, std::abs(moved) / most) : 1.0;
+  return std::isfinite(most) ? most * (1 - share * share) / 2 : most;
+}
+
+}  // namespace
+
+double JointHistory::position(std::uint64_t sample, std::size_t joint) const noexcept {
+  const auto index = static_cast<std::size_t>(sample % slots_.size());
+  return positions_[index * joints_ + joint].load(std::memory_order_acquire);
+}
+
+bool JointHistory::last_before(double time_s, std::uint64_t count, std::uint64_t& sample) const noexcept {
+  sample = count > slots_.size() ? count - slots_.size() : 0;
+  double sample_s = 0;
+  if (read_time(sample, sample_s) && sample_s > time_s) {
+    return false;
+  }
+  for (std::uint64_t after = count; after - sample > 1;) {
+    const std::uint64_t middle = sample + (after - sample) / 2;
+    if (!read_time(middle, sample_s) || sample_s <= time_s) {
+      sample = middle;
+    } else {
+      after = middle;
+    }
+  }
+  return read_time(sample, sample_s) && sample_s <= time_s;
+}
+
+bool JointHistory::greatest_motion(double time_s, double time_error_s, std::span<const double> q,
+                                   std::span<const double> most_speed, std::span<const double> most_acceleration,
+                                   std::span<double> away) const noexcept {
+  const std::uint64_t count = count_.load(std::memory_order_acquire);
+  const bool sizes = q.size() == joints_ && most_speed.size() == joints_ && most_acceleration.size() == joints_ &&
+                     away.size() == joints_;
+  const double from_s = time_s - time_error_s;
+  const double to_s = time_s + time_error_s;
+  std::uint64_t first = 0;
+  if (!sizes || count == 0 || !(time_error_s >= 0) || !last_before(from_s, count, first)) {
+    return false;
+  }
+  std::fill(away.begin(), away.end(), 0.0);
+  double begin_s = 0;
+  bool read = read_time(first, begin_s);
+  for (std::uint64_t i = first; read && i + 1 < count && begin_s <= to_s; ++i) {
+    double end_s = 0;
+    read = read_time(i + 1, end_s);
+    const double gap_s = end_s - begin_s;
+    if (gap_s > max_gap_s_) {
+      return false;
+    }
+    const double enter = std::max(0.0, (from_s - begin_s) / gap_s);
+    const double leave = std::min(1.0, (to_s - begin_s) / gap_s);
+    for (std::size_t j = 0; j < joints_; ++j) {
+      const double begin = position(i, j);
+      const double moved = position(i + 1, j) - begin;
+      const double off_line =
+          std::min(most_acceleration[j] * gap_s * gap_s / 8, off_line_by_speed(most_speed[j] * gap_s, moved));
+      const double entered = std::abs(begin + enter * moved - q[j]);
+      const double left = std::abs(begin + leave * moved - q[j]);
+      away[j] = std::max(away[j], std::max(entered, left) + off_line);
+    }
+    double still_s = 0;
+    read = read && read_time(i, still_s) && still_s == begin_s && read_time(i + 1, still_s);
+    begin_s = end_s;
+  }
+  double newest_s = 0;
+  read = read && read_time(count - 1, newest_s);
+  const double later_s = to_s - newest_s;
+  if (!read || !(later_s > 0)) {
+    return read;
+  }
+  double before_s = 0;
+  const bool pair = count > 1 && read_time(count - 2, before_s);
+  const double gap_s = newest_s - before_s;
+  for (std::size_t j = 0; j < joints_; ++j) {
+    const double newest = position(count - 1, j);
+    const double speed = pair ? std::abs(newest - position(count - 2, j)) / gap_s + most_acceleration[j] * gap_s
+                              : std::numeric_limits<double>::infinity();
+    const double further =
+        std::min(most_speed[j] * later_s, speed * later_s + most_acceleration[j] * later_s * later_s / 2);
+    away[j] = std::max(away[j], std::abs(newest - q[j]) + further);
+  }
+  return (!pair || read_time(count - 2, before_s)) && read_time(count - 1, newest_s);
+}
+
 JointsAtTime JointHistory::at(double time_s, std::span<double> q) const noexcept {
   const std::uint64_t count = count_.load(std::memory_order_acquire);
   if (count == 0 || q.size() != joints_) {
@@ -85,21 +179,9 @@ JointsAtTime JointHistory::at(double time_s, std::span<double> q) const noexcept
     const bool read = add_positions(count - 1, 0, 1, q);
     return {read ? JointAnswer::held : JointAnswer::too_old, time_s - newest_s};
   }
-  std::uint64_t before = count > slots_.size() ? count - slots_.size() : 0;  // the last sample not later than time_s
+  std::uint64_t before = 0;
   double before_s = 0;
-  if (read_time(before, before_s) && before_s > time_s) {
-    return {JointAnswer::too_old, 0};
-  }
-  for (std::uint64_t after = count; after - before > 1;) {
-    const std::uint64_t middle = before + (after - before) / 2;
-    double middle_s = 0;
-    if (!read_time(middle, middle_s) || middle_s <= time_s) {
-      before = middle;
-    } else {
-      after = middle;
-    }
-  }
-  if (!read_time(before, before_s) || before_s > time_s) {
+  if (!last_before(time_s, count, before) || !read_time(before, before_s)) {
     return {JointAnswer::too_old, 0};
   }
   if (before_s == time_s) {

@@ -47,6 +47,16 @@ class JointHistory {
   /// known.
   [[nodiscard]] JointsAtTime at(double time_s, std::span<double> q) const noexcept;
 
+  /// How far each joint may be from q (what at(time_s) gave) at any time within time_error_s of time_s, into away: rad
+  /// or m. Where samples lie around that window it is what they moved; between two of them h apart a joint leaves the
+  /// line by at most A h^2 / 8, and by (V h - dq^2 / (V h)) / 2; after the newest it goes on with the speed v of the
+  /// last two: by (|v| + A h) t + A t^2 / 2, and by V t. V: most_speed, A: most_acceleration, one a joint, not
+  /// negative, infinite where not known. False, and nothing is known, where the samples do not reach back that far,
+  /// where the window holds a gap longer than max_gap_s, or a size is wrong.
+  [[nodiscard]] bool greatest_motion(double time_s, double time_error_s, std::span<const double> q,
+                                     std::span<const double> most_speed, std::span<const double> most_acceleration,
+                                     std::span<double> away) const noexcept;
+
  private:
   /// Sample i is complete while `version` is 2 i + 2; it is odd while the slot is written.
   struct Slot {
@@ -56,6 +66,9 @@ class JointHistory {
   [[nodiscard]] bool read_time(std::uint64_t sample, double& time_s) const noexcept;
   /// q = a q + b (positions of the sample). False when the sample was replaced.
   [[nodiscard]] bool add_positions(std::uint64_t sample, double a, double b, std::span<double> q) const noexcept;
+  /// The last sample not later than time_s, among those kept of `count`. False when there is none.
+  [[nodiscard]] bool last_before(double time_s, std::uint64_t count, std::uint64_t& sample) const noexcept;
+  [[nodiscard]] double position(std::uint64_t sample, std::size_t joint) const noexcept;
 
   std::size_t joints_;
   double max_gap_s_;

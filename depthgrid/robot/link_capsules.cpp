@@ -1,5 +1,6 @@
 #include "depthgrid/robot/link_capsules.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -51,15 +52,22 @@ Capsule rounded(const CylinderShape& cylinder, const Pose& T_link_shape, std::ve
 }
 
 Capsule around_mesh(const MeshShape& mesh, const Pose& T_link_shape) {
-  constexpr double kMaxCoordinate_m = 100;
+  constexpr double kMaxCoordinate_m = 10;
+  constexpr double kLeastSize_m = 2e-4;
   std::vector<Vector3d> points = mesh_points(mesh.file);
+  Eigen::AlignedBox3d box;
   for (Vector3d& p : points) {
     p = p.cwiseProduct(mesh.scale);
     if (!p.allFinite() || !(p.cwiseAbs().maxCoeff() <= kMaxCoordinate_m)) {
       fail(mesh.file.string(), ": at scale (", mesh.scale.transpose(), ") a corner is (", p.transpose(),
-           ") m, must be within ", kMaxCoordinate_m, " m; scale 0.001 is for files in millimetres");
+           ") m, must be within ", kMaxCoordinate_m, " m; in millimetres? did you mean scale='0.001 0.001 0.001'?");
     }
+    box.extend(p);
     p = T_link_shape * p;
+  }
+  if (!(box.sizes().maxCoeff() >= kLeastSize_m)) {
+    fail(mesh.file.string(), ": at scale (", mesh.scale.transpose(), ") the mesh is ", box.sizes().maxCoeff(),
+         " m long, must be at least ", kLeastSize_m, " m; is the file in metres already? did you mean scale='1 1 1'?");
   }
   if (!has_area(points)) {
     fail(mesh.file.string(), ": at scale (", mesh.scale.transpose(), ") the mesh has no area");

@@ -3,6 +3,7 @@
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/number_parsing.hpp"
+#include "depthgrid/core/text_encoding.hpp"
 #include "depthgrid/robot/mesh_formats.hpp"
 #include "depthgrid/robot/words.hpp"
 
@@ -73,9 +74,7 @@ class ObjReader {
 
 Corners obj_corners(std::string_view text, const std::string& context) {
   ObjReader reader(context);
-  if (text.starts_with("\xEF\xBB\xBF")) {
-    text.remove_prefix(3);
-  }
+  text = without_byte_order_mark(text, context);
   std::string joined;
   while (!text.empty()) {
     const std::string_view line = next_line(text);

@@ -19,37 +19,72 @@ struct Place {
   fs::path within;
 };
 
+/// For users of the command and for those who call the library.
+std::string how_to_state(const std::string& package) {
+  return "state its folder with --package " + shown(package) + "=FOLDER, in a program in UrdfOptions::packages";
+}
+
 fs::path folder_of(const fs::path& urdf) {
   std::error_code unused;
   return fs::absolute(urdf, unused).lexically_normal().parent_path();
 }
 
-/// The folder of a package: as stated, else a folder of that name that holds the URDF file, or stands beside one.
+bool is_package(const fs::path& folder) {
+  std::error_code unused;
+  return fs::is_regular_file(folder / "package.xml", unused);
+}
+
+/// What has a package's name around a URDF file.
+struct Around {
+  fs::path folder;     ///< the package; empty: none
+  fs::path not_taken;  ///< the nearest of the name that does not say that it is a package; empty: none
+};
+
+/// The file's own folder or the one that holds it, and others only where they say that they are a package. Without that
+/// any folder up to the root would do, and package://home/... would read what is nobody's robot.
+Around package_around(const std::string& package, const fs::path& urdf) {
+  const fs::path own = folder_of(urdf);
+  Around result;
+  for (fs::path folder = own;; folder = folder.parent_path()) {
+    for (const fs::path& candidate : {folder.filename() == package ? folder : fs::path(), folder / package}) {
+      std::error_code unused;
+      if (candidate.empty() || !fs::is_directory(candidate, unused)) {
+        continue;
+      }
+      if (candidate == own || candidate == own.parent_path() || is_package(candidate)) {
+        result.folder = candidate;
+        return result;
+      }
+      if (result.not_taken.empty()) {
+        result.not_taken = candidate;
+      }
+    }
+    if (folder == folder.parent_path()) {
+      return result;
+    }
+  }
+}
+
+/// The folder of a package: as stated, else around the file. Empty where there is none and need not be.
 fs::path package_folder(const std::string& package, const fs::path& urdf, const UrdfOptions& options,
                         const std::string& context) {
   if (const auto stated = options.packages.find(package); stated != options.packages.end()) {
     return stated->second;
   }
-  std::error_code unused;
-  for (fs::path folder = folder_of(urdf);; folder = folder.parent_path()) {
-    if (folder.filename() == package) {
-      return folder;
-    }
-    if (fs::is_directory(folder / package, unused)) {
-      return folder / package;
-    }
-    if (folder == folder.parent_path()) {
-      fail(context, "no folder is stated for package '", shown(package),
-           "', and none of that name is around the file: state it in UrdfOptions::packages[\"", shown(package), "\"]");
-    }
+  const Around around = package_around(package, urdf);
+  if (around.folder.empty() && options.require_meshes) {
+    fail(context, "no folder is stated for package '", shown(package), "'",
+         around.not_taken.empty() ? ", and none of that name is around the file: "
+                                  : ", and " + around.not_taken.string() + " holds no package.xml: ",
+         how_to_state(package));
   }
+  return around.folder;
 }
 
 /// The nearest folder around the file that is a package, else the file's own.
 fs::path robot_folder(const fs::path& urdf) {
-  std::error_code unused;
   for (fs::path folder = folder_of(urdf); folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (fs::is_regular_file(folder / "package.xml", unused)) {
+    if (is_package(folder)) {
       return folder;
     }
   }
@@ -93,13 +128,21 @@ fs::path mesh_path(const std::string& name, const fs::path& urdf, const UrdfOpti
   const std::string_view file_scheme = "file://";
   const std::string mesh = "mesh '" + shown(name) + "'";
   Place place{urdf.parent_path() / name, robot_folder(urdf)};
+  std::string package;
   if (name.starts_with(package_scheme)) {
     const std::string rest = name.substr(package_scheme.size());
     const std::size_t slash = rest.find('/');
     if (slash == std::string::npos || slash == 0) {
       fail(context, mesh, " must be package://NAME/FILE");
     }
-    place.within = package_folder(rest.substr(0, slash), urdf, options, context + mesh + ": ");
+    package = rest.substr(0, slash);
+    if (package == "." || package == "..") {
+      fail(context, mesh, " must be package://NAME/FILE, and '", package, "' is no name");
+    }
+    place.within = package_folder(package, urdf, options, context + mesh + ": ");
+    if (place.within.empty() && !options.require_meshes) {
+      return name;
+    }
     place.path = place.within / fs::path(rest.substr(slash + 1)).relative_path();
   } else if (name.starts_with(file_scheme)) {
     const std::string rest = name.substr(file_scheme.size());
@@ -114,13 +157,14 @@ fs::path mesh_path(const std::string& name, const fs::path& urdf, const UrdfOpti
   std::error_code unused;
   const bool within = lies_in(place.path, place.within) ||
                       std::any_of(options.packages.begin(), options.packages.end(),
-                                  [&place](const auto& package) { return lies_in(place.path, package.second); });
+                                  [&place](const auto& stated) { return lies_in(place.path, stated.second); });
   if (!within) {
-    fail(context, mesh, " is ", place.path, ", outside of the robot's folder ", place.within,
-         ": state the folder that it is in as one of UrdfOptions::packages");
+    fail(context, mesh, " is ", place.path, ", outside of the robot's folder ", place.within, ": ",
+         how_to_state("NAME"));
   }
   if (options.require_meshes && !fs::is_regular_file(place.path, unused)) {
-    fail(context, mesh, " is ", place.path, ", which is not there");
+    fail(context, mesh, " is ", place.path, ", which is not there",
+         package.empty() ? std::string() : ": " + how_to_state(package));
   }
   return place.path;
 }

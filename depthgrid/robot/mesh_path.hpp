@@ -9,7 +9,8 @@
 namespace depthgrid::robot {
 
 /// The file that `name` (package://, file:// or relative to the folder of `urdf`) stands for. Throws Error, beginning
-/// with `context`, when the package is unknown or the file is not there.
+/// with `context`, when the package is unknown or the file is not there; where neither is required the file in an
+/// unknown package is `name` as it is.
 [[nodiscard]] std::filesystem::path mesh_path(const std::string& name, const std::filesystem::path& urdf,
                                               const UrdfOptions& options, const std::string& context);
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/text_encoding.hpp"
 #include "depthgrid/robot/mesh_formats.hpp"
 #include "depthgrid/robot/words.hpp"
 
@@ -91,11 +92,12 @@ Corners stl_corners(std::string_view bytes, const std::string& context) {
   const std::size_t count = binary_size ? number_at<std::uint32_t>(bytes, 80) : 0;
   const std::size_t needed = kHeaderBytes + kTriangleBytes * count;
   // Headers of binary files may begin with "solid", too; but then a zero byte follows, in the number at the latest.
-  std::string_view beginning = bytes.substr(0, kHeaderBytes);
+  const bool marked = bytes.starts_with("\xEF\xBB\xBFsolid");
+  std::string_view beginning = bytes.substr(marked ? 3 : 0, kHeaderBytes);
   const bool text = lower_case(next_word(beginning)).starts_with("solid") &&
                     bytes.substr(0, kHeaderBytes).find('\0') == std::string_view::npos && needed != bytes.size();
   if (text) {
-    return ascii_corners(bytes, context);
+    return ascii_corners(without_byte_order_mark(bytes, context), context);
   }
   if (!binary_size) {
     fail(context, "is no STL: it does not begin with 'solid', and has ", bytes.size(),

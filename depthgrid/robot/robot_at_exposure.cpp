@@ -1,6 +1,8 @@
 #include "depthgrid/robot/robot_at_exposure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
@@ -15,6 +17,8 @@ RobotAtExposure::RobotAtExposure(PlacedRobot robot, const JointHistory& history,
       settings_(settings),
       removal_(camera, std::move(capsules), settings.removal),
       q_(robot_.model.joints().size()),
+      moved_(robot_.model.joints().size()),
+      window_(robot_.model.joints().size()),
       T_world_link_(robot_.model.links().size(), Pose::Identity()),
       motion_m_(removal_.capsules().size()) {
   const RobotModel& model = robot_.model;
@@ -36,6 +40,19 @@ RobotAtExposure::RobotAtExposure(PlacedRobot robot, const JointHistory& history,
            ", must be finite and not negative; state joint_speeds where the model has no limit");
     }
   }
+  std::vector<double>& accelerations = settings_.joint_accelerations;
+  if (accelerations.empty()) {
+    accelerations.assign(model.joints().size(), std::numeric_limits<double>::infinity());
+  } else if (accelerations.size() != model.joints().size()) {
+    fail(model.source(), ": ", accelerations.size(), " joint accelerations for ", model.joints().size(), " joints");
+  } else {
+    for (std::size_t j = 0; j < accelerations.size(); ++j) {
+      if (!(std::isfinite(accelerations[j]) && accelerations[j] >= 0)) {
+        fail(model.source(), ": joint '", model.joints()[j].name, "': its acceleration is ", accelerations[j],
+             ", must be finite and not negative; leave joint_accelerations empty where they are not known");
+      }
+    }
+  }
 }
 
 ExposedRobot RobotAtExposure::find(double time_s, const Pose& T_world_camera, const DepthView* reading) noexcept {
@@ -44,8 +61,17 @@ ExposedRobot RobotAtExposure::find(double time_s, const Pose& T_world_camera, co
   if (!result.joints.known() || !robot_.link_poses(q_, T_world_link_)) {
     return result;
   }
-  motion_padding(robot_.model, removal_.capsules(), T_world_link_, settings_.joint_speeds,
-                 settings_.time_error_s + result.joints.time_error_s, motion_m_);
+  const double error_s = settings_.time_error_s + result.joints.time_error_s;
+  result.measured_motion = history_.greatest_motion(time_s, settings_.time_error_s, q_, settings_.joint_speeds,
+                                                    settings_.joint_accelerations, window_);
+  for (std::size_t j = 0; j < moved_.size(); ++j) {
+    const double at_most = settings_.joint_speeds[j] * error_s;
+    // Without an acceleration, what a joint may do between two samples counts no more than its speed within the error.
+    const double measured =
+        std::isfinite(settings_.joint_accelerations[j]) ? window_[j] : std::min(at_most, window_[j]);
+    moved_[j] = result.measured_motion ? measured : at_most;
+  }
+  motion_padding(robot_.model, removal_.capsules(), T_world_link_, moved_, 1.0, motion_m_);
   result.view = removal_.find(T_world_link_, T_world_camera, motion_m_, reading);
   return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -34,6 +35,7 @@ struct BoxShape {
 struct MeshShape {
   std::filesystem::path file;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  std::string name{};  ///< as the robot's file has it, package://... for one
 };
 
 struct LinkShape {
@@ -41,9 +43,13 @@ struct LinkShape {
   std::variant<SphereShape, CylinderShape, CapsuleShape, BoxShape, MeshShape> shape;
 };
 
+/// URDF has two for each link: coarse ones for collisions, and what the link looks like.
+enum class ShapeKind : std::uint8_t { collision, visual };
+
 struct LinkDescription {
   std::string name;
   std::vector<LinkShape> shapes;
+  ShapeKind kind = ShapeKind::collision;  ///< of these shapes
 };
 
 enum class JointType {

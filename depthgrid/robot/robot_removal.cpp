@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "depthgrid/core/blind_layer.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/usable_frame.hpp"
 
@@ -71,7 +72,7 @@ RobotRemoval::RobotRemoval(const PinholeCamera& camera, std::vector<LinkCapsule>
   if (!(std::isfinite(settings_.padding_m) && settings_.padding_m >= 0)) {
     fail("robot removal: the padding is ", settings_.padding_m, " m, must be finite and not negative");
   }
-  half_pixel_ = settings_.whole_pixels ? 0.5 * std::hypot(1 / camera_.fx_px, 1 / camera_.fy_px) : 0.0;
+  half_pixel_ = settings_.whole_pixels ? half_pixel(camera_) : 0.0;
   stride_px_ = (camera_.width_px + kLanes - 1) / kLanes * kLanes;
   const auto columns = static_cast<std::size_t>(stride_px_);
   const auto height = static_cast<std::size_t>(camera_.height_px);
@@ -87,6 +88,7 @@ RobotRemoval::RobotRemoval(const PinholeCamera& camera, std::vector<LinkCapsule>
   spans_.resize(height * capsules_.size());
   rows_.resize(capsules_.size());
   in_camera_.resize(capsules_.size());
+  links_world_.reserve(capsules_.size());
   row_capsules_.resize(capsules_.size());
   row_spans_.resize(capsules_.size());
 }
@@ -96,6 +98,9 @@ bool RobotRemoval::take(std::span<const Pose> T_world_link, const Pose& T_world_
                         std::span<const double> motion_m) noexcept {
   const Pose T_camera_world = T_world_camera.inverse(Eigen::Isometry);
   const auto height = static_cast<std::size_t>(camera_.height_px);
+  blind_m_ = 0;
+  reach_m_ = 0;
+  links_world_.clear();
   for (std::size_t i = 0; i < capsules_.size(); ++i) {
     const LinkCapsule& item = capsules_[i];
     if (item.link >= T_world_link.size()) {
@@ -103,7 +108,8 @@ bool RobotRemoval::take(std::span<const Pose> T_world_link, const Pose& T_world_
     }
     const Pose T_camera_link = T_camera_world * T_world_link[item.link];
     const Capsule capsule{T_camera_link * item.capsule.a, T_camera_link * item.capsule.b, item.capsule.radius_m};
-    double padded_m = capsule.radius_m + settings_.padding_m + (motion_m.empty() ? 0.0 : motion_m[i]);
+    const double grown_m = settings_.padding_m + (motion_m.empty() ? 0.0 : motion_m[i]);
+    double padded_m = capsule.radius_m + grown_m;
     // What a pixel shows is as deep as a point of its centre ray that is half a diagonal away or less.
     const double farthest_m = std::max(capsule.a.z(), capsule.b.z()) + padded_m;
     padded_m += half_pixel_ * std::max(farthest_m, 0.0);
@@ -115,6 +121,13 @@ bool RobotRemoval::take(std::span<const Pose> T_world_link, const Pose& T_world_
     const std::span<PixelSpan> spans(spans_.data() + i * height, height);
     std::fill(spans.begin(), spans.end(), PixelSpan{});
     rows_[i] = widen(camera_, {capsule.a, capsule.b, padded_m}, spans);
+    if (rows_[i].begin < rows_[i].end) {
+      const Pose& T = T_world_link[item.link];
+      links_world_.push_back({T * item.capsule.a, T * item.capsule.b, capsule.radius_m + grown_m});
+      const double deepest_m = std::max(capsule.a.z(), capsule.b.z()) + padded_m;
+      blind_m_ = std::max(blind_m_, padded_m - capsule.radius_m + half_pixel(camera_) * std::max(deepest_m, 0.0));
+      reach_m_ = std::max(reach_m_, std::max(capsule.a.norm(), capsule.b.norm()) + padded_m);
+    }
   }
   return true;
 }
@@ -169,7 +182,7 @@ RobotView RobotRemoval::find(std::span<const Pose> T_world_link, const Pose& T_w
   for (int v = 0; v < camera_.height_px; ++v) {
     write(v, readable ? &image : nullptr);
   }
-  return {near_m_.data(), far_m_.data(), stride_px_};
+  return {near_m_.data(), far_m_.data(), stride_px_, blind_m_, reach_m_, settings_.margin_in_test, links_world_};
 }
 
 }  // namespace depthgrid::robot

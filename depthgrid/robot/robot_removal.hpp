@@ -22,6 +22,10 @@ struct RemovalSettings {
   /// Adds what half a pixel's diagonal measures at each capsule's far end: a reading may come from anywhere in its
   /// pixel, while the interval is that of the pixel's centre. False only for rendered images.
   bool whole_pixels = true;
+  /// RobotView::within_margin: the sensor's margin belongs to the test whether a reading is the robot's, and need not
+  /// be in the padding. Declared: nothing that is as thin as 2 m(D) stands right before the robot, along a camera's
+  /// ray.
+  bool margin_in_test = false;
 };
 
 /// One camera's view of the robot. Allocates in its constructor only. One thread at a time.
@@ -39,7 +43,11 @@ class RobotRemoval {
   /// the capsules themselves; where the ray meets the padding only, the first. Without readings this is what
   /// simulation::Scene::render() gives. Its ends are those of capsules a little thicker (1e-5 m, 4e-6 of their
   /// distance), so that rounding loses nothing. A camera inside the padding sees an interval that starts at the
-  /// smallest positive float.
+  /// smallest positive float. Its layer is the thickest of the capsules that are in the image: padding, motion, what is
+  /// added for the pixels and for rounding, and half a pixel's diagonal more, as an obstacle may stand anywhere in a
+  /// pixel that the interval of its centre takes.
+  ///
+  /// The view says which links are in the image, each with its padding and its motion.
   ///
   /// The view points into this object: it is good until the next call. It has no robot (near_m null, so that the robot
   /// is its own obstacle) when a size is wrong or a number is not finite. A reading of
@@ -57,7 +65,9 @@ class RobotRemoval {
   PinholeCamera camera_;
   std::vector<LinkCapsule> capsules_;
   RemovalSettings settings_;
-  double half_pixel_ = 0;  ///< half a pixel's diagonal at depth 1
+  double half_pixel_ = 0;  ///< half a pixel's diagonal at depth 1 is added to the padding; 0: it is not
+  double blind_m_ = 0;     ///< of the last take()
+  double reach_m_ = 0;
   int stride_px_ = 0;
   AlignedVector<float> near_m_;
   AlignedVector<float> far_m_;
@@ -68,6 +78,7 @@ class RobotRemoval {
   std::vector<PixelSpan> spans_;          ///< of each capsule, one a row
   std::vector<RowRange> rows_;            ///< of each capsule
   std::vector<RowCapsule> in_camera_;     ///< of each capsule
+  std::vector<Capsule> links_world_;      ///< of those in the image, with padding
   std::vector<RowCapsule> row_capsules_;  ///< those of one row
   std::vector<PixelSpan> row_spans_;
 };

@@ -29,7 +29,7 @@ LinkDescription link_of(const pugi::xml_node& link, const std::filesystem::path&
   result.name = name_of(link.attribute("name"), "a link", source.string() + ": ");
   const std::string context = source.string() + ": link '" + result.name + "': ";
   refuse_misspelt(link, {"name", "visual", "collision", "inertial"}, context);
-  result.shapes = shapes_of(link, source, options, context);
+  add_shapes(link, source, options, context, result);
   return result;
 }
 

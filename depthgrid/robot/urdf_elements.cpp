@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/robot/words.hpp"
 
 namespace depthgrid::robot {
@@ -88,8 +90,8 @@ std::string name_of(const pugi::xml_attribute& attribute, const std::string& wha
   if (name.empty()) {
     fail(context, what, " has no name");
   }
-  if (std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
-    fail(context, what, " '", shown(name), "' has a control character in its name");
+  if (!is_printable(name)) {
+    fail(context, what, " '", shown(name), "' has a control character in its name, or a byte that is no UTF-8");
   }
   return std::string(name);
 }
@@ -103,10 +105,10 @@ std::optional<Eigen::Vector3d> vector_of(const pugi::xml_node& element, const ch
   return numbers_of<Eigen::Vector3d>(element, name, context);
 }
 
-void check_length_m(double value, const char* what, const std::string& context) {
-  constexpr double kMaxLength = 1000;
-  if (!(std::abs(value) <= kMaxLength)) {
-    fail(context, what, " is ", value, " m, must be at most ", kMaxLength, " m; lengths in a URDF are metres");
+void check_length_m(double value, const char* what, const std::string& context, double largest_m) {
+  if (!(std::abs(value) <= largest_m)) {
+    fail(context, what, " is ", value, " m, must be at most ", largest_m,
+         " m; lengths in a URDF are metres: in millimetres? did you mean ", 1e-3 * value, "?");
   }
 }
 
@@ -130,10 +132,10 @@ Pose origin_of(const pugi::xml_node& element, const std::string& context) {
     }
     pose.linear() = Eigen::Quaterniond(*quaternion).normalized().toRotationMatrix();
   } else if (rpy) {
-    constexpr double kMaxAngle = 1000;
+    constexpr double kMaxAngle = 4 * std::numbers::pi;
     if (!(rpy->cwiseAbs().maxCoeff() <= kMaxAngle)) {
       fail(context, "rpy of an origin is (", rpy->transpose(), "), must be within ", kMaxAngle,
-           " rad; angles are radians");
+           " rad; angles are radians: in degrees? did you mean (", (*rpy * (std::numbers::pi / 180)).transpose(), ")?");
     }
     const Eigen::Vector3d c = (0.5 * *rpy).array().cos();
     const Eigen::Vector3d s = (0.5 * *rpy).array().sin();

@@ -20,7 +20,7 @@ void refuse_misspelt(const pugi::xml_node& element, std::initializer_list<std::s
 /// The child of that name, or none; throws where there are two.
 [[nodiscard]] pugi::xml_node only_child(const pugi::xml_node& element, const char* name, const std::string& context);
 
-/// A name: not empty, without control characters. `what` is for the message: "link", say.
+/// A name: not empty, and it prints. `what` is for the message: "link", say.
 [[nodiscard]] std::string name_of(const pugi::xml_attribute& attribute, const std::string& what,
                                   const std::string& context);
 
@@ -32,8 +32,11 @@ void refuse_misspelt(const pugi::xml_node& element, std::initializer_list<std::s
 [[nodiscard]] std::optional<Eigen::Vector3d> vector_of(const pugi::xml_node& element, const char* name,
                                                        const std::string& context);
 
-/// Throws where a length is more than a robot may have, 1000 m either way.
-void check_length_m(double value, const char* what, const std::string& context);
+/// Longest accepted length of a robot, either way: longer ones are millimetres.
+inline constexpr double kMaxLength_m = 30;
+
+/// Throws where a length is more than that, with the value in metres that was probably meant.
+void check_length_m(double value, const char* what, const std::string& context, double largest_m = kMaxLength_m);
 
 /// The <origin> of an element: xyz with rpy or, since version 1.1, quat_xyzw. The identity where there is none.
 [[nodiscard]] Pose origin_of(const pugi::xml_node& element, const std::string& context);

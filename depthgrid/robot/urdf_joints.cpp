@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -40,6 +42,23 @@ void read_type(const pugi::xml_node& element, UrdfJoint& joint, const std::strin
   joint.free = type;
 }
 
+/// Limits in degrees and millimetres. Greater numbers are a way of saying that there is none.
+void check_unit(const JointDescription& joint, const char* what, double limit, const std::string& context) {
+  constexpr double kMaxTurn = 30;       // radians, nearly five turns to either side
+  constexpr double kMaxDegrees = 1080;  // three turns
+  constexpr double kMaxMillimetres = 1e4;
+  const bool turns = joint.type == JointType::revolute;
+  const double size = std::abs(limit);
+  if (turns && size > kMaxTurn && size <= kMaxDegrees) {
+    fail(context, "its limit ", what, " is ", limit, " rad, must be within ", kMaxTurn,
+         " rad; angles in a URDF are radians: in degrees? did you mean ", limit * (std::numbers::pi / 180), "?");
+  }
+  if (!turns && size > kMaxLength_m && size <= kMaxMillimetres) {
+    fail(context, "its limit ", what, " is ", limit, " m, must be within ", kMaxLength_m,
+         " m; lengths in a URDF are metres: in millimetres? did you mean ", 1e-3 * limit, "?");
+  }
+}
+
 void read_limit(const pugi::xml_node& element, JointDescription& joint, const std::string& context) {
   const pugi::xml_node limit = only_child(element, "limit", context);
   refuse_misspelt(limit, {"lower", "upper", "velocity", "effort"}, context);
@@ -56,6 +75,8 @@ void read_limit(const pugi::xml_node& element, JointDescription& joint, const st
   }
   joint.lower = number_of(limit, "lower", context).value_or(0);
   joint.upper = number_of(limit, "upper", context).value_or(0);
+  check_unit(joint, "lower", joint.lower, context);
+  check_unit(joint, "upper", joint.upper, context);
 }
 
 void read_mimic(const pugi::xml_node& element, JointDescription& joint, const std::string& context) {

@@ -21,7 +21,8 @@ double stated_length(const pugi::xml_node& shape, const char* name, const std::s
   if (!value || *value < 0) {
     fail(context, what, " is ", value ? shown(shape.attribute(name).value()) : "not stated", ", must not be negative");
   }
-  check_length_m(*value, what.c_str(), context);
+  constexpr double kMaxRadius = 5;
+  check_length_m(*value, what.c_str(), context, std::string_view(name) == "radius" ? kMaxRadius : kMaxLength_m);
   return *value;
 }
 
@@ -42,7 +43,7 @@ MeshShape mesh_of(const pugi::xml_node& element, const std::filesystem::path& fi
     fail(context, "mesh '", shown(name), "' has scale (", scale.transpose(),
          "), must not be 0; it is 1 1 1 for a file in metres");
   }
-  return MeshShape{mesh_path(name, file, options, context), scale};
+  return MeshShape{mesh_path(name, file, options, context), scale, name};
 }
 
 /// None where the shape is a point.
@@ -78,37 +79,45 @@ std::optional<Shape> shape_of(const pugi::xml_node& element, const std::filesyst
   fail(context, "a shape is <", shown(kind), ">, must be <box>, <cylinder>, <sphere>, <capsule> or <mesh>");
 }
 
-}  // namespace
-
-std::vector<LinkShape> shapes_of(const pugi::xml_node& link, const std::filesystem::path& file,
-                                 const UrdfOptions& options, const std::string& context) {
-  std::vector<LinkShape> result;
-  for (const char* kind : {"collision", "visual"}) {
-    for (const pugi::xml_node& item : link.children(kind)) {
-      refuse_misspelt(item, {"origin", "geometry", "material", "name"}, context);
-      const pugi::xml_node geometry = only_child(item, "geometry", context);
-      pugi::xml_node element;
-      for (const pugi::xml_node& child : geometry.children()) {
-        if (child.type() == pugi::node_element) {
-          if (!element.empty()) {
-            fail(context, "a <geometry> holds <", shown(element.name()), "> and <", shown(child.name()),
-                 ">, must hold one shape: write a <", kind, "> for each");
-          }
-          element = child;
-        }
+/// The one shape of a <collision> or <visual>.
+pugi::xml_node only_shape(const pugi::xml_node& item, const std::string& context) {
+  const pugi::xml_node geometry = only_child(item, "geometry", context);
+  pugi::xml_node element;
+  for (const pugi::xml_node& child : geometry.children()) {
+    if (child.type() == pugi::node_element) {
+      if (!element.empty()) {
+        fail(context, "a <geometry> holds <", shown(element.name()), "> and <", shown(child.name()),
+             ">, must hold one shape: write a <", item.name(), "> for each");
       }
-      if (!element) {
-        fail(context, "a <", kind, "> has no shape, must have a <geometry> with one");
-      }
-      if (auto shape = shape_of(element, file, options, context)) {
-        result.push_back({origin_of(item, context), std::move(*shape)});
-      }
-    }
-    if (!result.empty()) {
-      break;  // visual shapes only where there are no others
+      element = child;
     }
   }
-  return result;
+  if (!element) {
+    fail(context, "a <", item.name(), "> has no shape, must have a <geometry> with one");
+  }
+  return element;
+}
+
+}  // namespace
+
+void add_shapes(const pugi::xml_node& link, const std::filesystem::path& file, const UrdfOptions& options,
+                const std::string& context, LinkDescription& result) {
+  const bool visual_first = options.shapes == ShapeKind::visual;
+  for (const ShapeKind kind :
+       {options.shapes, visual_first ? ShapeKind::collision : ShapeKind::visual}) {  // the second only if none of both
+    const char* const name = kind == ShapeKind::visual ? "visual" : "collision";
+    for (const pugi::xml_node& item : link.children(name)) {
+      refuse_misspelt(item, {"origin", "geometry", "material", "name"}, context);
+      const pugi::xml_node element = only_shape(item, context);
+      if (auto shape = shape_of(element, file, options, context)) {
+        result.shapes.push_back({origin_of(item, context), std::move(*shape)});
+      }
+    }
+    if (!result.shapes.empty()) {
+      result.kind = kind;
+      return;
+    }
+  }
 }
 
 }  // namespace depthgrid::robot

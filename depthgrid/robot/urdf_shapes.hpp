@@ -11,9 +11,9 @@
 
 namespace depthgrid::robot {
 
-/// The collision shapes of a <link>, or the visual ones where it has none. Shapes that are a point (a box of size
-/// 0 0 0) are left out. `file` is where names of meshes begin.
-[[nodiscard]] std::vector<LinkShape> shapes_of(const pugi::xml_node& link, const std::filesystem::path& file,
-                                               const UrdfOptions& options, const std::string& context);
+/// Gives a link the shapes of its <link> that are of the kind wanted, or those of the other kind where it has none.
+/// Shapes that are a point (a box of size 0 0 0) are left out. `file` is where names of meshes begin.
+void add_shapes(const pugi::xml_node& link, const std::filesystem::path& file, const UrdfOptions& options,
+                const std::string& context, LinkDescription& result);
 
 }  // namespace depthgrid::robot

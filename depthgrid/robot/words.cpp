@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depthgrid/core/number_parsing.hpp"
+#include "depthgrid/core/printable_text.hpp"
 
 namespace depthgrid::robot {
 
@@ -28,15 +29,7 @@ std::optional<double> finite_number(std::string_view word) noexcept {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMaximum = 60;
-  std::string result(text.substr(0, kMaximum));
-  for (char& c : result) {
-    const auto code = static_cast<unsigned char>(c);
-    c = code < 0x20 || code == 0x7f ? '?' : c;
-  }
-  return result + (text.size() > kMaximum ? "..." : "");
-}
+std::string shown(std::string_view text) { return printable_excerpt(text); }
 
 std::string lower_case(std::string_view text) {
   std::string result(text);

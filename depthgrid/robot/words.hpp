@@ -16,7 +16,7 @@ std::string_view next_line(std::string_view& rest) noexcept;
 /// The whole word as a finite number.
 std::optional<double> finite_number(std::string_view word) noexcept;
 
-/// As it may stand in a message: one line, no control characters, at most 60 characters.
+/// As it may stand in a message: one line that prints, some 60 characters.
 std::string shown(std::string_view text);
 
 std::string lower_case(std::string_view text);

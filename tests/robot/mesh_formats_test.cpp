@@ -53,6 +53,8 @@ TEST(MeshFormats, Stl) {
   EXPECT_EQ(
       mesh_corners("solid a b c\n" + facet + facet + "endsolid\nsolid d\n" + facet + "endsolid d", ".stl", "").size(),
       9U);
+  EXPECT_EQ(mesh_corners("\xEF\xBB\xBFsolid a\r\n" + facet + "endsolid\r\n", ".stl", "").size(),
+            mesh_corners("solid a\n" + facet + "endsolid\n", ".stl", "").size());
   EXPECT_THAT(message_of(".stl", "solid\n" + facet), HasSubstr("cut off"));
   EXPECT_THAT(message_of(".stl", "solid\n" + facet.substr(0, 60)), HasSubstr("stl"));
   EXPECT_THAT(message_of(".stl", "solid\nfacet normal 0 0 1 outer loop vertex 0 0 1e999"), HasSubstr("1e999"));
@@ -201,6 +203,8 @@ TEST(MeshFormats, ScalesOfAMesh) {
               }),
               AllOf(HasSubstr(file.string()), HasSubstr("0 0 0")));
   EXPECT_THAT(test::thrown_message([&] { (void)capsules({1000, 1000, 1000}); }), HasSubstr("millimetres"));
+  EXPECT_THAT(test::thrown_message([&] { (void)capsules({100, 100, 100}); }), HasSubstr("scale='0.001 0.001 0.001'"));
+  EXPECT_THAT(test::thrown_message([&] { (void)capsules({1e-6, 1e-6, 1e-6}); }), HasSubstr("scale='1 1 1'"));
   EXPECT_THAT(test::thrown_message([&] { (void)capsules({std::nan(""), 1, 1}); }), HasSubstr("nan"));
 }
 

@@ -18,7 +18,7 @@ views::Settings settings() {
   views::Settings result;
   result.space = views::BoxSpace{{-0.8, -0.8, 0}, {0.8, 0.8, 1.4}};
   result.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::ignored, 3.0};
-  result.margins.resize(1);
+  result.margins = {CameraMargins{.sensor = {}, .smallest_obstacle_m = 0}};
   result.v_max_m_s = 0;
   result.rho_m = 0.25;
   return result;

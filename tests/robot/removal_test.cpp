@@ -283,6 +283,25 @@ TEST(Removal, EveryInstructionSetGivesTheSameBits) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
+TEST(Removal, SaysWhichLinksAreInTheImageAndHowThickTheyCount) {
+  const PinholeCamera camera{64, 48, 60, 60, 32, 24};
+  const std::vector<LinkCapsule> capsules{{0, {{0, 0, 2}, {0, 0.1, 2}, 0.05}}, {1, {{0, 0, 0}, {0, 0, 0}, 0.05}}};
+  RobotRemoval removal(camera, capsules, {0.03, true, true});
+  std::vector<Pose> T_world_link(2, Pose::Identity());
+  T_world_link[0].translation() = Eigen::Vector3d(0.1, 0, 0);
+  T_world_link[1].translation() = Eigen::Vector3d(0, 0, -2);  // behind the camera
+  const RobotView one = removal.find(T_world_link, Pose::Identity(), std::vector<double>{0.01, 0.02});
+  EXPECT_TRUE(one.within_margin);
+  ASSERT_EQ(one.links_world.size(), 1U);
+  EXPECT_TRUE(one.links_world[0].a.isApprox(Eigen::Vector3d(0.1, 0, 2)));
+  EXPECT_TRUE(one.links_world[0].b.isApprox(Eigen::Vector3d(0.1, 0.1, 2)));
+  EXPECT_NEAR(one.links_world[0].radius_m, 0.05 + 0.03 + 0.01, 1e-12);
+  EXPECT_GE(one.blind_m, 0.04) << "the layer holds them";
+  T_world_link[1].translation() = Eigen::Vector3d(0, 0, 3);
+  EXPECT_EQ(removal.find(T_world_link, Pose::Identity()).links_world.size(), 2U);
+  EXPECT_FALSE(RobotRemoval(camera, capsules, {0.03}).find(T_world_link, Pose::Identity()).within_margin);
+}
+
 TEST(Removal, WithoutUsableNumbersThereIsNoRobot) {
   Random random(1);
   View view(random, 40, 30);
@@ -323,10 +342,19 @@ TEST(RobotAtExposure, FromTheTimeToTheImage) {
   EXPECT_EQ(exposed.joints.answer, JointAnswer::interpolated);
   ASSERT_NE(exposed.view.near_m, nullptr);
   const double tip_m = robot.motion_m().back();
-  EXPECT_GT(tip_m, 0.02);
+  EXPECT_GT(tip_m, 0.01);
   EXPECT_EQ(robot.find(0.11, view.T_world_camera).joints.answer, JointAnswer::held);
   EXPECT_GT(robot.motion_m().back(), tip_m);  // the newest sample is old
   EXPECT_EQ(robot.find(0.2, view.T_world_camera).view.near_m, nullptr);
+  settings.joint_accelerations = {10};
+  EXPECT_NE(test::thrown_message(
+                [&] { const RobotAtExposure unused({kuka()}, history, view.camera, link_capsules(kuka()), settings); }),
+            "");
+  settings.joint_accelerations.assign(7, -10);
+  EXPECT_NE(test::thrown_message(
+                [&] { const RobotAtExposure unused({kuka()}, history, view.camera, link_capsules(kuka()), settings); }),
+            "");
+  settings.joint_accelerations.clear();
   settings.joint_speeds = {1, 2};
   EXPECT_NE(test::thrown_message(
                 [&] { const RobotAtExposure unused({kuka()}, history, view.camera, link_capsules(kuka()), settings); }),
@@ -339,6 +367,71 @@ TEST(RobotAtExposure, FromTheTimeToTheImage) {
   const auto allocations = guard.allocations();
   EXPECT_EQ(allocations, 0);
   EXPECT_NE(again.view.near_m, nullptr);
+}
+
+// A standing arm is not padded for motion, a slow one for as much as it moved, and both make a thinner blind layer.
+TEST(RobotAtExposure, PadsForTheMotionThatWasMeasured) {
+  std::vector<double> layers_m;  // of each find
+  const auto found = [&](double speed, std::vector<double> accelerations, bool later_samples) {
+    JointHistory history(7, 200, 0.01, 0.02);
+    Random random(2);
+    const std::vector<double> q = random.positions(kuka());
+    for (int k = 0; 0.002 * k < (later_samples ? 0.2 : 0.1); ++k) {
+      std::vector<double> at = q;
+      for (double& angle : at) {
+        angle += speed * 0.002 * k;
+      }
+      EXPECT_TRUE(history.add(0.002 * k, at));
+    }
+    const View view(random, 64, 48);
+    ExposureSettings settings;
+    settings.time_error_s = 0.02;
+    settings.joint_accelerations = std::move(accelerations);
+    RobotAtExposure robot({kuka()}, history, view.camera, link_capsules(kuka()), settings);
+    const ExposedRobot exposed = robot.find(0.098, view.T_world_camera);
+    EXPECT_TRUE(exposed.measured_motion);
+    layers_m.push_back(exposed.view.blind_m);
+    return robot.motion_m().back();
+  };
+  const std::vector<double> stated(7, 10.0);
+  const double limits_m = found(0.0, {}, false);  // no sample after, no acceleration: the greatest speeds
+  EXPECT_GT(limits_m, 0.05);
+  EXPECT_LT(found(0.0, stated, true), 1e-4) << "standing";
+  EXPECT_LT(found(0.0, {}, true), 0.1 * limits_m) << "standing, what it does between samples is not known";
+  EXPECT_LT(found(0.0, stated, false), 0.2 * limits_m) << "it may have set off";
+  const double slow_m = found(0.1, stated, true);
+  EXPECT_GT(slow_m, 0.002);
+  EXPECT_LT(slow_m, 0.1 * limits_m);
+  EXPECT_LT(slow_m, found(0.3, stated, true));
+  // The layer follows: the greatest speeds, standing, ..., slow, less slow.
+  ASSERT_EQ(layers_m.size(), 6U);
+  EXPECT_LT(layers_m[1], layers_m[4]);
+  EXPECT_LT(layers_m[4], layers_m[5]);
+  EXPECT_LT(layers_m[5], layers_m[0]);
+}
+
+TEST(RobotAtExposure, ADropoutOfSamplesIsNoMotion) {
+  // Samples for a while, none for ten seconds, then again: the arm stands.
+  JointHistory history(7, 400, 0.01, 0.02);
+  Random random(2);
+  const std::vector<double> q = random.positions(kuka());
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_TRUE(history.add(0.002 * k, q));
+  }
+  for (int k = 0; k < 50; ++k) {
+    ASSERT_TRUE(history.add(10 + 0.002 * k, q));
+  }
+  const View view(random, 64, 48);
+  ExposureSettings settings;
+  settings.time_error_s = 0.02;
+  settings.joint_accelerations.assign(7, 10.0);
+  RobotAtExposure robot({kuka()}, history, view.camera, link_capsules(kuka()), settings);
+  EXPECT_FALSE(robot.find(10.01, view.T_world_camera).measured_motion);
+  const double soon_m = robot.motion_m().back();
+  EXPECT_TRUE(robot.find(10.05, view.T_world_camera).measured_motion);
+  EXPECT_LT(robot.motion_m().back(), 1e-4);
+  EXPECT_GT(soon_m, 0.02);
+  EXPECT_LT(soon_m, 0.5) << "at most what the joints can within the time error";
 }
 
 }  // namespace

@@ -109,7 +109,13 @@ TEST(Urdf, Joints) {
   EXPECT_THAT(with("<mimic joint='missing'/>"), AllOf(HasSubstr("'j'"), HasSubstr("'missing'")));
   EXPECT_THAT(with("<mimic joint='j'/>"), AllOf(HasSubstr("'j'"), HasSubstr("circle")));
   EXPECT_THAT(with("<mimic joint='k' multiplier='1e308'/><mimic joint='k'/>"), HasSubstr("more than one <mimic>"));
-  EXPECT_THAT(with("<origin xyz='0 0 1e308'/>"), AllOf(HasSubstr("'j'"), HasSubstr("1000 m")));
+  EXPECT_THAT(with("<origin xyz='0 0 1e308'/>"), AllOf(HasSubstr("'j'"), HasSubstr("30 m")));
+  EXPECT_THAT(with("<origin xyz='0 0 333'/>"), AllOf(HasSubstr("333 m"), HasSubstr("did you mean 0.333?")));
+  EXPECT_THAT(with("<origin rpy='0 0 90'/>"), AllOf(HasSubstr("in degrees?"), HasSubstr("1.570796327)?")));
+  EXPECT_THAT(with("", "revolute", "<limit lower='-170' upper='170' velocity='3' effort='4'/>"),
+              AllOf(HasSubstr("limit lower is -170 rad"), HasSubstr("did you mean -2.96")));
+  EXPECT_THAT(with("", "prismatic", "<limit lower='0' upper='850' velocity='3' effort='4'/>"),
+              AllOf(HasSubstr("limit upper is 850 m"), HasSubstr("did you mean 0.85?")));
   EXPECT_THAT(with("<origin rpy='0 1e300 0'/>"), AllOf(HasSubstr("1e+300"), HasSubstr("radians")));
   EXPECT_THAT(with("<origin rpy='0 0 0' quat_xyzw='0 0 0 1'/>"), HasSubstr("must have one"));
   EXPECT_THAT(with("<origin quat_xyzw='0 0 0 2'/>"), AllOf(HasSubstr("0 0 0 2"), HasSubstr("length 1")));
@@ -237,6 +243,9 @@ TEST(Urdf, NothingIsDroppedForASpelling) {
   EXPECT_THAT(message_of("<link name='a'><colision/></link>"), AllOf(HasSubstr("'a'"), HasSubstr("'collision'")));
   EXPECT_THAT(message_of("<link name='a'/><xacro:include filename='b'/>"), HasSubstr("xacro FILE"));
   EXPECT_THAT(message_of("<link name='a&#10;b'/>"), HasSubstr("control character"));
+  EXPECT_THAT(message_of("<link name='a&#x9b;2Jb'/>"), HasSubstr("'a\\xc2\\x9b2Jb' has a control character"));
+  EXPECT_THAT(message_of("<link name='a\xff'/>"),
+              HasSubstr("'a\\xff' has a control character in its name, or a byte that is no UTF-8"));
   EXPECT_THAT(test::thrown_message([] { (void)parse_urdf("<sdf/>", "x.urdf"); }), HasSubstr("<sdf>"));
   EXPECT_THAT(test::thrown_message([] { (void)parse_urdf("<robot><link name='a'/></robot><robot/>", "x.urdf"); }),
               HasSubstr("second"));
@@ -255,7 +264,10 @@ TEST(Urdf, Shapes) {
   EXPECT_THAT(with("<cylinder radius='1' length='-1'/>"),
               AllOf(HasSubstr("'a'"), HasSubstr("length"), HasSubstr("-1")));
   EXPECT_THAT(with("<capsule radius='1'/>"), AllOf(HasSubstr("length"), HasSubstr("not stated")));
-  EXPECT_THAT(with("<sphere radius='1e308'/>"), HasSubstr("1000 m"));
+  EXPECT_THAT(with("<sphere radius='1e308'/>"), HasSubstr("5 m"));
+  EXPECT_THAT(with("<sphere radius='60'/>"),
+              AllOf(HasSubstr("radius of a sphere is 60 m"), HasSubstr("did you mean 0.06?")));
+  EXPECT_THAT(with("<box size='100 200 300'/>"), HasSubstr("did you mean 0.3?"));
   EXPECT_THAT(with("<sphere radius='1'/><box size='1 1 1'/>"), AllOf(HasSubstr("<sphere>"), HasSubstr("<box>")));
   EXPECT_THAT(with("</geometry><geometry>"), HasSubstr("more than one <geometry>"));
   EXPECT_THAT(with("<!-- none -->"), HasSubstr("no shape"));
@@ -330,7 +342,7 @@ TEST(Urdf, NamesOfMeshes) {
               HasSubstr("file:///FOLDER/FILE"));
   EXPECT_THAT(test::thrown_message([&] { mesh_file("http://somewhere/m.stl", urdf); }), HasSubstr("package://"));
   EXPECT_THAT(test::thrown_message([&] { mesh_file("package://nobody/m.stl", urdf); }),
-              HasSubstr("UrdfOptions::packages[\"nobody\"]"));
+              AllOf(HasSubstr("--package nobody=FOLDER"), HasSubstr("UrdfOptions::packages")));
 }
 
 TEST(Urdf, MeshesLieInTheRobotsFolderOrInOneThatIsStated) {
@@ -345,7 +357,8 @@ TEST(Urdf, MeshesLieInTheRobotsFolderOrInOneThatIsStated) {
   for (const std::string& name : {above, beside, "file://" + (root / "robot" / "m.stl").string(),
                                   std::string("package://robot/../robot_more/m.stl")}) {
     EXPECT_THAT(test::thrown_message([&] { mesh_file(name, urdf); }),
-                AllOf(HasSubstr("outside"), HasSubstr("UrdfOptions::packages"), HasSubstr(name)));
+                AllOf(HasSubstr("outside"), HasSubstr("--package NAME=FOLDER"), HasSubstr("UrdfOptions::packages"),
+                      HasSubstr(name)));
   }
   UrdfOptions options;
   options.packages["any"] = root / "robot";
@@ -373,6 +386,34 @@ TEST(Urdf, PackagesAreFolders) {
   UrdfOptions options;
   options.packages["pack"] = root / "pack";
   EXPECT_EQ(mesh_of(parse_urdf(text, "elsewhere.urdf", options)).file, root / "pack" / "m.stl");
+}
+
+// A folder that merely has the name, up to the root of the disk, would open all of it to the file.
+TEST(Urdf, AFolderOfThePackagesNameMustBeAPackage) {
+  const std::filesystem::path root = new_folder("depthgrid_urdf_found");
+  const std::filesystem::path urdf = root / "ws" / "arm" / "urdf" / "r.urdf";
+  std::filesystem::create_directories(urdf.parent_path());
+  std::filesystem::create_directories(root / "ws" / "hand");
+  for (const char* file : {"ws/m.stl", "ws/arm/m.stl", "ws/arm/urdf/m.stl", "ws/hand/m.stl"}) {
+    std::ofstream(root / file) << "solid";
+  }
+  EXPECT_EQ(mesh_file("package://urdf/m.stl", urdf), root / "ws/arm/urdf/m.stl");
+  EXPECT_EQ(mesh_file("package://arm/m.stl", urdf), root / "ws/arm/m.stl");
+  const auto refused = [](const std::filesystem::path& folder, const std::string& name) {
+    return AllOf(HasSubstr("no folder is stated for package '" + name + "', and " + folder.string() +
+                           " holds no package.xml: state its folder with --package " + name + "=FOLDER"),
+                 Not(HasSubstr("\n")));
+  };
+  EXPECT_THAT(test::thrown_message([&] { mesh_file("package://ws/m.stl", urdf); }), refused(root / "ws", "ws"));
+  EXPECT_THAT(test::thrown_message([&] { mesh_file("package://hand/m.stl", urdf); }),
+              refused(root / "ws/hand", "hand"));
+  EXPECT_THAT(test::thrown_message([&] { mesh_file("package://etc/passwd", urdf); }), refused("/etc", "etc"));
+  EXPECT_THAT(test::thrown_message([&] { mesh_file("package://../m.stl", urdf); }), HasSubstr("'..' is no name"));
+  std::ofstream(root / "ws/hand/package.xml") << "<package/>";
+  EXPECT_EQ(mesh_file("package://hand/m.stl", urdf), root / "ws/hand/m.stl");
+  UrdfOptions options;
+  options.packages["ws"] = root / "ws";
+  EXPECT_EQ(mesh_file("package://ws/m.stl", urdf, options), root / "ws/m.stl");
 }
 
 TEST(Urdf, PrintsNothing) {
