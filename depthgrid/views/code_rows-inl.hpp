@@ -17,28 +17,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::views::HWY_NAMESPACE {
 
-/// Minima of codes along the row. kRadius is w, or 0 where it is not known here.
+/// Minima down the columns: of the rows 0 to 2 w, and of the rows 1 to 2 w + 1. kRadius is w, or 0 where it is not
+/// known here.
 template <int kRadius>
-HWY_INLINE void narrow_minimum(const std::uint16_t* HWY_RESTRICT codes, int width_px, int radius_if_unknown,
-                               std::uint16_t* HWY_RESTRICT minimum) {
+HWY_INLINE void narrow_minima(const std::uint16_t* const* rows, int width_px, int radius_if_unknown,
+                              std::uint16_t* HWY_RESTRICT first, std::uint16_t* HWY_RESTRICT second) {
   const Units d;
-  const int radius_px = kRadius > 0 ? kRadius : radius_if_unknown;
-  // A few columns more: zeros that windows read.
-  for (int u = 0; u < width_px + 4; u += lanes(d)) {
-    auto smallest = hn::Min(hn::LoadU(d, codes + u - radius_px), hn::LoadU(d, codes + u + radius_px));
-    for (int k = 1 - radius_px; k < radius_px; ++k) {
-      smallest = hn::Min(smallest, hn::LoadU(d, codes + u + k));
-    }
-    hn::StoreU(smallest, d, minimum + u);
-  }
-}
-
-/// Minima of those of four columns: with w >= 1 the neighbourhoods of the first and the last cover those between.
-HWY_INLINE void narrow_window(const std::uint16_t* HWY_RESTRICT minimum, int width_px,
-                              std::uint16_t* HWY_RESTRICT window) {
-  const Units d;
+  const int last = 2 * (kRadius > 0 ? kRadius : radius_if_unknown) + 1;
   for (int u = 0; u < width_px; u += lanes(d)) {
-    hn::StoreU(hn::Min(hn::LoadU(d, minimum + u), hn::LoadU(d, minimum + u + 3)), d, window + u);
+    auto shared = hn::LoadU(d, rows[1] + u);
+    for (int row = 2; row < last; ++row) {
+      shared = hn::Min(shared, hn::LoadU(d, rows[row] + u));
+    }
+    hn::StoreU(hn::Min(shared, hn::LoadU(d, rows[0] + u)), d, first + u);
+    hn::StoreU(hn::Min(shared, hn::LoadU(d, rows[last] + u)), d, second + u);
   }
 }
 
@@ -67,39 +59,45 @@ struct CodeConverter {
   Reducer reduced;
 };
 
-/// The reduced depths of the minima of the rows 0 to count - 1, each column for itself, and of the rows 1 to count. A
-/// null result is left out. kCount is the count, or 0 where it is not known here.
-template <int kCount, bool kHasBeyond>
-HWY_INLINE void narrow_columns(const Reading& reading, const std::uint16_t* const* rows, int count_if_unknown,
-                               const PixelRange& columns, float* HWY_RESTRICT first, float* HWY_RESTRICT second) {
-  const Units d;
-  const CodeConverter<kHasBeyond> convert(reading);
-  const int count = kCount > 0 ? kCount : count_if_unknown;
-  const auto minimum = [&](int row, int end, int u) HWY_ATTR {
-    auto smallest = hn::LoadU(d, rows[row] + u);
-    for (++row; row < end; ++row) {
-      smallest = hn::Min(smallest, hn::LoadU(d, rows[row] + u));
-    }
-    return smallest;
-  };
-  if (first == nullptr || second == nullptr) {
-    float* only = first != nullptr ? first : second;
-    const int row = first != nullptr ? 0 : 1;
-    for (int u = columns.begin; u < columns.end && only != nullptr; u += lanes(d)) {
-      convert(minimum(row, row + count, u), columns.end - u, only + u);
-    }
-    return;
+/// Brings the second row below this one near, which is written soon: as many columns as one vector of codes has.
+HWY_INLINE void ask_for_pair(const float* row, int width_px) {
+  constexpr int kCacheLine = 64 / sizeof(float);
+  for (int i = 0; i < lanes(Units()); i += kCacheLine) {
+    ask_for(row + i, 2 * std::ptrdiff_t{width_px} * static_cast<std::ptrdiff_t>(sizeof(float)));
   }
-  const std::ptrdiff_t pair_bytes = 2 * (second - first) * static_cast<std::ptrdiff_t>(sizeof(float));
+}
+
+/// g of one row, and its codes: minima of each column's minimum and w to both sides. kRadius is w, or 0 where it is not
+/// known here.
+template <int kRadius, class Converter>
+HWY_INLINE void free_of_codes(const Converter& convert, const std::uint16_t* HWY_RESTRICT minimum,
+                              int radius_if_unknown, const PixelRange& columns, int width_px,
+                              std::uint16_t* HWY_RESTRICT codes, float* HWY_RESTRICT free_m) {
+  const Units d;
+  const int radius_px = kRadius > 0 ? kRadius : radius_if_unknown;
   for (int u = columns.begin; u < columns.end; u += lanes(d)) {
-    constexpr int kCacheLine = 64 / sizeof(float);
-    for (int i = 0; i < lanes(d); i += kCacheLine) {
-      ask_for(first + u + i, pair_bytes);
-      ask_for(second + u + i, pair_bytes);
+    ask_for_pair(free_m + u, width_px);
+    auto smallest = hn::Min(hn::LoadU(d, minimum + u - radius_px), hn::LoadU(d, minimum + u + radius_px));
+    for (int k = 1 - radius_px; k < radius_px; ++k) {
+      smallest = hn::Min(smallest, hn::LoadU(d, minimum + u + k));
     }
-    const auto shared = minimum(1, count, u);
-    convert(hn::Min(shared, hn::LoadU(d, rows[0] + u)), columns.end - u, first + u);
-    convert(hn::Min(shared, hn::LoadU(d, rows[count] + u)), columns.end - u, second + u);
+    hn::StoreU(smallest, d, codes + u);
+    convert(smallest, columns.end - u, free_m + u);
+  }
+}
+
+/// Some of a row of level 0 from the codes of g of this row and of the third below it. With w >= 1, and no robot, the
+/// neighbourhoods of a texel's corners cover those of all its pixels.
+template <class Converter>
+HWY_INLINE void texels_of_codes(const Converter& convert, const std::uint16_t* HWY_RESTRICT upper,
+                                const std::uint16_t* HWY_RESTRICT lower, const PixelRange& columns, int width_px,
+                                float* HWY_RESTRICT texels) {
+  const Units d;
+  for (int u = columns.begin; u < columns.end; u += lanes(d)) {
+    ask_for_pair(texels + u, width_px);
+    const auto left = hn::Min(hn::LoadU(d, upper + u), hn::LoadU(d, lower + u));
+    const auto right = hn::Min(hn::LoadU(d, upper + u + 3), hn::LoadU(d, lower + u + 3));
+    convert(hn::Min(left, right), columns.end - u, texels + u);
   }
 }
 

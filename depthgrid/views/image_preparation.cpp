@@ -70,50 +70,64 @@ class Passes {
                     static_cast<std::size_t>(width_px_) * sizeof(float));
       }
     }
-    for (int v = begin; v < end && narrow_; ++v) {
-      narrow_minimum<kRadius>(rows_.codes(v), width_px_, image_.radius_px, rows_.narrow_minimum(v));
-    }
-    for (int v = begin; v < end && narrow_; ++v) {
-      narrow_window(rows_.narrow_minimum(v), width_px_, rows_.narrow_window(v));
-    }
-    for (int v = begin; v < end; ++v) {
-      const PixelRange reduced = rows_.columns().reduced(v);
-      if (reduced.empty()) {
-        continue;
+    for (; begin < end; begin += 2) {
+      const int pair_end = std::min(begin + 2, end);
+      for (int v = begin; v < pair_end; ++v) {
+        reduce(v, rows_.columns().reduced(v));
       }
-      if constexpr (kUnits) {
-        reduce_row(FewUnits(), UnitReader<true>(reading_), reading_.of_units, image_, v, rows_.codes(v), reduced,
-                   rows_);
-      } else {
-        reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
-                   pixel_row(reinterpret_cast<const float*>(result_.kept.data()), width_px_, v), reduced, rows_);
+      for (int v = begin; v < pair_end; ++v) {
+        filter_row<kRadius>(rows_.reduced_m(v), rows_.columns().filtered(v), image_.radius_px, rows_.minimum_m(v));
       }
-      filter_row<kRadius>(rows_.reduced_m(), rows_.columns().filtered(v), image_.radius_px, rows_.minimum_m(v));
     }
   }
 
-  /// The rows v and v + 1 of a result, where they exist, from minima of codes; what is done in single precision is left
-  /// out if both rows have it.
-  template <int kCount, class RowOf, class FloatColumnsOf>
-  HWY_INLINE void from_codes(const RowOf& row_of, int v, int rows_below, float* pixels,
-                             const FloatColumnsOf& in_floats) {
-    const auto exists = [&](int row) { return row >= 0 && row < height_px_; };
-    const auto floats = [&](int row) { return exists(row) ? in_floats(row) : PixelRange{0, width_px_}; };
-    const auto result = [&](int row) { return exists(row) ? pixel_row(pixels, width_px_, row) : nullptr; };
-    const int count = 2 * image_.radius_px + 1 + rows_below;
-    std::array<const std::uint16_t*, (kCount > 0 ? kCount : 2 * kMaxFilterRadius + 4) + 1> rows{};
-    for (int i = 0; i <= count; ++i) {
-      rows[i] = row_of(v - image_.radius_px + i);
+  /// A row in single precision.
+  HWY_INLINE void reduce(int v, const PixelRange& columns) {
+    if (columns.empty()) {
+      return;
     }
-    const auto convert = [&](const PixelRange& columns) HWY_ATTR {
-      reading_.has_beyond
-          ? narrow_columns<kCount, true>(reading_, rows.data(), count, columns, result(v), result(v + 1))
-          : narrow_columns<kCount, false>(reading_, rows.data(), count, columns, result(v), result(v + 1));
-    };
-    const PixelRange floats_only = common(floats(v), floats(v + 1));
-    convert({0, floats_only.empty() ? width_px_ : floats_only.begin});
-    if (!floats_only.empty()) {
-      convert({floats_only.end, width_px_});
+    if constexpr (kUnits) {
+      reduce_row(FewUnits(), UnitReader<true>(reading_), reading_.of_units, image_, v, rows_.codes(v), columns, rows_,
+                 pixel_row(result_.free_m.data(), width_px_, v));
+    } else {
+      reduce_row(Floats(), MetreReader(reading_), reading_.of_metres, image_, v,
+                 pixel_row(reinterpret_cast<const float*>(result_.kept.data()), width_px_, v), columns, rows_,
+                 pixel_row(result_.free_m.data(), width_px_, v));
+    }
+  }
+
+  /// Columns that are not worked out in single precision.
+  template <class Body>
+  HWY_INLINE void in_codes(const PixelRange& in_floats, const Body& body) {
+    if (in_floats.empty()) {
+      body(PixelRange{0, width_px_});
+    } else {
+      body(PixelRange{0, in_floats.begin});
+      body(PixelRange{in_floats.end, width_px_});
+    }
+  }
+
+  /// body(converter) with the converter that this camera's reading needs.
+  template <class Body>
+  HWY_INLINE void with_converter(const Body& body) {
+    reading_.has_beyond ? body(CodeConverter<true>(reading_)) : body(CodeConverter<false>(reading_));
+  }
+
+  /// g of the rows v and v + 1 where codes give it.
+  template <class Converter>
+  HWY_INLINE void free_rows_of_codes(int v, const Converter& convert) {
+    std::array<const std::uint16_t*, 2 * (kRadius > 0 ? kRadius : kMaxFilterRadius) + 2> rows{};
+    for (int i = 0; i < 2 * image_.radius_px + 2; ++i) {
+      rows[i] = rows_.codes(v - image_.radius_px + i);
+    }
+    narrow_minima<kRadius>(rows.data(), width_px_, image_.radius_px, rows_.narrow_minimum(v),
+                           rows_.narrow_minimum(v + 1));
+    for (int row = v; row < std::min(v + 2, height_px_); ++row) {
+      float* free_m = pixel_row(result_.free_m.data(), width_px_, row);
+      in_codes(rows_.columns().free(row), [&](const PixelRange& columns) HWY_ATTR {
+        free_of_codes<kRadius>(convert, rows_.narrow_minimum(row), image_.radius_px, columns, width_px_,
+                               rows_.narrow_free(row), free_m);
+      });
     }
   }
 
@@ -121,17 +135,22 @@ class Passes {
   HWY_INLINE PixelRange free_rows(int v) {
     PixelRange island_rows;
     if (narrow_) {
-      from_codes<kRadius == 0 ? 0 : 2 * kRadius + 1>([&](int row) { return rows_.narrow_minimum(row); }, v, 0,
-                                                     result_.free_m.data(),
-                                                     [&](int row) { return rows_.columns().free(row); });
+      with_converter([&](const auto& convert) HWY_ATTR { free_rows_of_codes(v, convert); });
     }
-    for (int row = v; row < std::min(v + 2, height_px_); ++row) {
+    const int end = std::min(v + 2, height_px_);
+    for (int row = v; row < end; ++row) {
+      filter_columns<kRadius>(rows_, rows_.columns().free(row), image_.radius_px, row, has_own_limits(image_),
+                              pixel_row(result_.free_m.data(), width_px_, row));
+    }
+    for (int row = v; row < end; ++row) {
       float* free_m = pixel_row(result_.free_m.data(), width_px_, row);
-      filter_columns<kRadius>(rows_, rows_.columns().free(row), image_.radius_px, row, free_m);
       const PixelRange robot = image_.robot.near_m != nullptr ? rows_.columns().robot(row) : PixelRange{};
       if (!robot.empty() && join_robot(image_, row, robot, result_, free_m)) {
         island_rows = joined(island_rows, {row, row + 1});
       }
+    }
+    for (int row = v; row < end; ++row) {
+      const float* free_m = pixel_row(result_.free_m.data(), width_px_, row);
       window_row(Smaller(), free_m, width_px_, rows_.columns().windows(row), rows_.window_m(row));
     }
     return island_rows;
@@ -140,13 +159,17 @@ class Passes {
   /// The rows j and j + 1 of level 0, and what can be made of them.
   HWY_INLINE void first_level(int j) {
     float* level = result_.minima_m.data() + result_.levels[0].offset;
-    if (narrow_) {
-      from_codes<kRadius == 0 ? 0 : 2 * kRadius + 4>([&](int row) { return rows_.narrow_window(row); }, j, 3, level,
-                                                     [&](int row) { return rows_.columns().texels(row); });
-    }
     for (int row = std::max(j, 0); row < std::min(j + 2, height_px_); ++row) {
-      first_level_row(rows_, rows_.columns().texels(row), row, pixel_row(level, width_px_, row));
-      minimum_rows_above(result_.levels, row, rows_.scratch(), result_.minima_m.data());
+      float* texels = pixel_row(level, width_px_, row);
+      if (narrow_) {
+        with_converter([&](const auto& convert) HWY_ATTR {
+          in_codes(rows_.columns().texels(row), [&](const PixelRange& columns) HWY_ATTR {
+            texels_of_codes(convert, rows_.narrow_free(row), rows_.narrow_free(row + 3), columns, width_px_, texels);
+          });
+        });
+      }
+      first_level_row(rows_, rows_.columns().texels(row), row, texels);
+      minimum_rows_above(result_.levels, row, result_.minima_m.data());
     }
   }
 

@@ -17,13 +17,14 @@ namespace depthgrid::views {
 struct NewImage {
   DepthView depth;     ///< with its stride
   RobotView robot;     ///< with its stride
+  DepthView measured;  ///< as `depth`, but as the camera gave it: what differs is no reading, but what a hole counts as
   int radius_px = 0;   ///< w
   float pocket_m = 0;  ///< ignored beyond the robot's exit, rounded towards zero
   float blind_m = 0;   ///< where the blind zone ends, rounded up
 };
 
-/// Writes everything but the island pyramids and bands. Before, the island images and columns hold "none" everywhere if
-/// there is a robot. Returns the rows that have islands.
+/// Writes everything but the second interval's pyramids and the bands. Before, the island images and columns hold
+/// "none" everywhere if there is a robot. Returns the rows that have islands.
 PixelRange prepare(const Reading& reading, const NewImage& image, PreparationRows& rows,
                    PreparedImage& result) noexcept;
 

@@ -26,6 +26,9 @@ PixelRange FloatColumns::around(int first, int last, int left, int right) const 
   if (everything_) {
     return {0, width_px_};
   }
+  if (first > last_robot_row_ || last < first_robot_row_) {
+    return {};
+  }
   PixelRange all;
   for (int v = std::max(first, first_robot_row_); v <= std::min(last, last_robot_row_); ++v) {
     all = joined(all, robot(v));
@@ -41,8 +44,8 @@ PreparationRows::PreparationRows(int width_px, int height_px, int radius_px)
     : columns_(width_px, height_px, radius_px),
       height_px_(height_px),
       radius_px_(radius_px),
-      narrow_(width_px, kNarrow + 5 * radius_px + 9),
-      wide_(width_px, kWide + 2 * radius_px + 7) {
+      narrow_(width_px, kNarrow + 2 * radius_px + 9),
+      wide_(width_px, last() + kSecond) {
   wide_.fill(kInfinite, std::numeric_limits<float>::infinity());
 }
 

@@ -87,20 +87,19 @@ class PreparationRows {
  public:
   PreparationRows(int width_px, int height_px, int radius_px);
 
-  /// Codes of row v (see Reading); zeros before and behind the row. The last w + 2 rows are kept.
+  /// Codes of row v (see Reading), all zero outside the image; zeros before and behind the row. The last 2 w + 2 rows
+  /// are kept.
   [[nodiscard]] std::uint16_t* codes(int v) noexcept {
-    return narrow_[kNarrow + 4 * radius_px_ + 7 + v % (radius_px_ + 2)];
+    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + 7 + v % (2 * radius_px_ + 2)];
   }
-  /// Minima of each value and w to both sides; all zero outside the image. The last 2 w + 2 rows are kept.
-  [[nodiscard]] std::uint16_t* narrow_minimum(int v) noexcept {
-    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + v % (2 * radius_px_ + 2)];
+  /// Of the rows v and v + 1, v even: minima of each code and w above and below; zeros before and behind the row.
+  [[nodiscard]] std::uint16_t* narrow_minimum(int v) noexcept { return narrow_[kNarrow + v % 2]; }
+  /// Minima of those and w to both sides: codes of g; all zero outside the image. The last five rows are kept.
+  [[nodiscard]] std::uint16_t* narrow_free(int v) noexcept {
+    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + 2 + v % 5];
   }
-  /// Minima of those of each column and the three to its right. The last 2 w + 5 rows are kept.
-  [[nodiscard]] std::uint16_t* narrow_window(int v) noexcept {
-    return outside(v) ? narrow_[kZero] : narrow_[kNarrow + 2 * radius_px_ + 2 + v % (2 * radius_px_ + 5)];
-  }
-  /// Reduced depths of one row; zeros before and behind the row.
-  [[nodiscard]] float* reduced_m() noexcept { return wide_[2]; }
+  /// Reduced depths of row v; zeros before and behind the row. The last two rows are kept.
+  [[nodiscard]] float* reduced_m(int v) noexcept { return wide_[2 + v % 2]; }
   /// Minima of each reduced depth and w to both sides; all zero outside the image. The last 2 w + 2 rows are kept.
   [[nodiscard]] float* minimum_m(int v) noexcept {
     return outside(v) ? wide_[kZero] : wide_[kWide + v % (2 * radius_px_ + 2)];
@@ -109,8 +108,15 @@ class PreparationRows {
   [[nodiscard]] float* window_m(int v) noexcept {
     return outside(v) ? wide_[kInfinite] : wide_[kWide + 2 * radius_px_ + 2 + v % 5];
   }
-  /// For the intermediate result of one row of texels.
-  [[nodiscard]] float* scratch() noexcept { return wide_[3]; }
+  /// Near and far ends of the second interval of rows of pixels. The last kSecondRows are kept.
+  static constexpr int kSecondRows = 4;
+  [[nodiscard]] float* second_m(int v, bool far) noexcept {
+    return wide_[last() + 2 * (v % kSecondRows) + (far ? 1 : 0)];
+  }
+  /// Extrema of those of each column and the three to its right. The last kSecondRows + 3 are kept.
+  [[nodiscard]] float* second_window_m(int v, bool far) noexcept {
+    return wide_[last() + 2 * (kSecondRows + v % (kSecondRows + 3)) + (far ? 1 : 0)];
+  }
 
   [[nodiscard]] FloatColumns& columns() noexcept { return columns_; }
 
@@ -119,6 +125,8 @@ class PreparationRows {
   static constexpr int kInfinite = 1;
   static constexpr int kNarrow = 1;
   static constexpr int kWide = 4;
+  static constexpr int kSecond = 2 * (2 * kSecondRows + 3);  ///< rows for the second interval, the last ones
+  [[nodiscard]] int last() const noexcept { return kWide + 2 * radius_px_ + 7; }
   [[nodiscard]] bool outside(int v) const noexcept { return v < 0 || v >= height_px_; }
 
   FloatColumns columns_;

@@ -29,16 +29,20 @@ PreparedImage::PreparedImage(int width_px, int height_px)
     rows += static_cast<std::size_t>(levels.back().height);
   }
   kept.resize(pixel_count(free_m) * sizeof(float));
+  texels += kTexelsBehind;
   minima_m.resize(texels);
   std::fill_n(island_near_m.data(), pixel_count(free_m), kNoNear);
   std::fill_n(island_far_m.data(), pixel_count(free_m), kNoFar);
-  island_near_maxima_m.assign(texels, kNoNear);
-  island_far_minima_m.assign(texels, kNoFar);
+  second_near_maxima_m.assign(texels, kNoNear);
+  second_far_minima_m.assign(texels, kNoFar);
+  links_world.reserve(kMostLinks);
+  second_texels.resize(rows);
   island_texels.resize(rows);
 }
 
 void PreparedImage::clear() noexcept {
   has_islands = false;
+  links_world.clear();
   std::fill_n(free_m.data(), pixel_count(free_m), 0.0F);
   std::fill(minima_m.begin(), minima_m.end(), 0.0F);
 }

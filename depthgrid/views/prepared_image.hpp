@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "depthgrid/core/aligned_vector.hpp"
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/depth_image.hpp"
 #include "depthgrid/views/pixel_range.hpp"
 #include "depthgrid/views/view.hpp"
@@ -43,20 +44,34 @@ struct PreparedImage {
   DepthImage free_m;
   std::vector<PyramidLevel> levels;
   AlignedVector<float> minima_m;  ///< of free_m, all levels
+  /// Behind the texels of each pyramid there are so many values more, so that whole vectors may be read.
+  static constexpr std::size_t kTexelsBehind = 64;
 
   /// True when some pixel has a robot interval that free_m does not hold wholly: it begins beyond the free depth
   /// (something stands before the robot, or nothing was measured there) or in the blind zone. Such an interval is an
   /// island that is not an obstacle to this camera. Else the rest is not up to date.
   bool has_islands = false;
-  DepthImage island_near_m, island_far_m;                          ///< per pixel; (+inf, -inf) where there is none
-  AlignedVector<float> island_near_maxima_m, island_far_minima_m;  ///< all levels
+  DepthImage island_near_m, island_far_m;  ///< per pixel; (+inf, -inf) where there is none
+  /// Every pixel has a second interval [near, far) without obstacles: its island, joined with what is free where the
+  /// two meet; without an island what is free. Largest `near` and smallest `far` of what a texel covers, all levels.
+  /// (+inf, -inf) in texels that are farther than kSecondReach texels of their level from those with islands: there
+  /// the second interval says no more than free_m.
+  AlignedVector<float> second_near_maxima_m, second_far_minima_m;
+  /// Texels that are looked up together lie no farther apart.
+  static constexpr int kSecondReach = kPyramidSpan / 2;
   /// The columns outside of which each kBandRows rows have no islands.
   static constexpr int kBandRows = 8;
   std::vector<PixelRange> island_bands;
 
+  /// RobotView's, the first kMostLinks of them, and what its readings are.
+  static constexpr std::size_t kMostLinks = 128;
+  std::vector<Capsule> links_world;
+  bool within_margin = false;
+
   // What only the next update reads.
   std::vector<PixelRange> island_columns;  ///< where a row of the island images may differ from "none"
-  std::vector<PixelRange> island_texels;   ///< the same of all rows of the island pyramids, level after level
+  std::vector<PixelRange> second_texels;   ///< the same of all rows of the second interval's pyramids, level by level
+  std::vector<PixelRange> island_texels;   ///< in each of these rows, texels that may cover islands
 };
 
 [[nodiscard]] inline const PreparedImage& prepared(const View& view) noexcept { return *view.image_; }

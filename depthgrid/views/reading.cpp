@@ -77,4 +77,21 @@ Reading::Reading(const MeasurementRule& rule, double metres_per_unit_in, const S
   }
 }
 
+std::uint16_t units_not_above(const Reading& reading, double depth_m) noexcept {
+  const double steps = depth_m * (1 - 1e-12) / reading.metres_per_unit;
+  if (!(steps >= reading.lowest_code)) {
+    return 0;
+  }
+  auto value = static_cast<std::uint16_t>(std::min(steps, static_cast<double>(reading.highest_unit)));
+  while (std::ranges::find(reading.invalid_units, value) != reading.invalid_units.end()) {
+    --value;
+  }
+  return value >= reading.lowest_code ? value : std::uint16_t{0};
+}
+
+float metres_not_above(const Reading& reading, double depth_m) noexcept {
+  const float value = rounded_down(depth_m);
+  return value >= reading.lowest_m ? std::min(value, reading.highest_m) : 0.0F;
+}
+
 }  // namespace depthgrid::views

@@ -46,4 +46,8 @@ struct Reading {
   Reduction of_metres;
 };
 
+/// The last value that stands for a depth of no more than this: a reading by the rule, else 0.
+[[nodiscard]] std::uint16_t units_not_above(const Reading& reading, double depth_m) noexcept;
+[[nodiscard]] float metres_not_above(const Reading& reading, double depth_m) noexcept;
+
 }  // namespace depthgrid::views

@@ -77,6 +77,10 @@ struct UnitReader {
     const M maybe = hn::Le(hn::Mul(about_m, hn::Set(d, 1.0F - 0x1p-20F)), limit_m);
     return hn::AllTrue(d, hn::Or(surely, hn::Not(maybe))) ? surely : hn::Le(depth(code), limit_m);
   }
+  /// D, but for rounding.
+  HWY_INLINE V about_m(hn::Vec<FewUnits> code) const {
+    return hn::Mul((*this)(code), hn::Set(Floats(), static_cast<float>(reading.metres_per_unit)));
+  }
   /// D, exactly.
   HWY_INLINE V depth(hn::Vec<FewUnits> code) const {
     const Floats d;
@@ -105,6 +109,7 @@ struct MetreReader {
     return hn::IfThenElse(hn::Gt(x, highest), beyond, from_low);
   }
   HWY_INLINE M at_most(V x, V limit_m) const { return hn::Le((*this)(x), limit_m); }
+  HWY_INLINE V about_m(V x) const { return (*this)(x); }
   V lowest, highest, beyond_highest;
 };
 

@@ -1,5 +1,6 @@
 #include "depthgrid/views/settings.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -14,6 +15,9 @@ constexpr const char* kName = "search settings: ";
 constexpr double kLargestRho = 100.0;
 /// Below this the cubes of the octree would shrink towards the rounding of single precision.
 constexpr double kSmallestResolution = 0.0005;
+
+/// Widest space of interest: the octree's cubes are then exact in single precision.
+constexpr double kMostResolutions = 32768;
 
 void check_within(const char* what, double value, double low, double high, const char* unit) {
   if (!(value >= low && value <= high)) {
@@ -55,6 +59,19 @@ void check_space(const BoxSpace& space) {
   }
 }
 
+/// The longest way from one corner of W to another along an axis of the world, at most.
+double width_m(const Settings& settings, const Rig& rig) {
+  if (const auto* box = std::get_if<BoxSpace>(&settings.space)) {
+    return (box->high_world - box->low_world).maxCoeff();
+  }
+  const auto& frustum = std::get<FrustumSpace>(settings.space);
+  const PinholeCamera& c = rig.cameras[frustum.principal].intrinsics;
+  return std::max(std::hypot(c.width_px / c.fx_px, c.height_px / c.fy_px) * frustum.d_max_m,
+                  std::hypot(std::max(c.cx_px, c.width_px - c.cx_px) / c.fx_px,
+                             std::max(c.cy_px, c.height_px - c.cy_px) / c.fy_px, 1.0) *
+                      frustum.d_max_m);
+}
+
 void check_declared(const char* what, Policy policy) {
   if (policy != Policy::obstacle && policy != Policy::ignored) {
     fail(kName, "policy for ", what, " is not declared: choose obstacle or ignored");
@@ -91,7 +108,18 @@ void validate(const Settings& settings, const Rig& rig) {
          rig.cameras.size());
   }
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
-    depthgrid::validate(settings.margins[k], (kName + ("camera '" + rig.cameras[k].id + "'")).c_str());
+    const std::string name = kName + ("camera '" + rig.cameras[k].id + "'");
+    depthgrid::validate(settings.margins[k], name.c_str());
+    if (std::isnan(settings.margins[k].smallest_obstacle_m)) {
+      fail(name,
+           ": the smallest obstacle is not declared: margins.smallest_obstacle_m = 0 assumes nothing, and every pixel "
+           "without reading is an obstacle; what a sensor model recommends stands in its smallest_obstacle_m");
+    }
+    if (settings.margins[k].second_view_x_m != 0 && !(rig.cameras[k].rule.near_m > 0)) {
+      fail(name, ": the second view is stated (second_view_x_m ", settings.margins[k].second_view_x_m,
+           " m) and rule.near_m is 0 m: how wide its shadows can be depends on how near things can be; set near_m, or "
+           "second_view_x_m = 0");
+    }
   }
   if (!(settings.rho_m > 0 && settings.rho_m <= kLargestRho)) {
     fail(kName, "rho is ", settings.rho_m, " m, must be greater than 0 and at most ", kLargestRho, " m");
@@ -99,6 +127,12 @@ void validate(const Settings& settings, const Rig& rig) {
   if (!(settings.resolution_m >= kSmallestResolution && settings.resolution_m <= settings.rho_m)) {
     fail(kName, "resolution is ", settings.resolution_m, " m, must be between ", kSmallestResolution, " m and rho (",
          settings.rho_m, " m)");
+  }
+  const double most_m = kMostResolutions * settings.resolution_m;
+  if (!(width_m(settings, rig) <= most_m)) {
+    fail(kName, "the space of interest is up to ", width_m(settings, rig), " m wide, must be at most ",
+         kMostResolutions, " times the resolution, ", most_m,
+         " m: nothing beyond the robot's reach and rho around it is needed");
   }
   if (std::isnan(settings.v_max_m_s)) {
     fail(kName,

@@ -48,16 +48,17 @@ struct Policies {
 };
 
 /// - Units: metres, seconds, m/s, world frame.
-/// - To be set: space, the three policies, margins, v_max_m_s. The rest has defaults.
+/// - To be set: space, the three policies, margins with each camera's smallest obstacle, v_max_m_s. The rest has
+///   defaults.
 /// - Errors: validate() throws Error.
 struct Settings {
-  std::variant<std::monostate, FrustumSpace, BoxSpace> space;  ///< W; has to be set
+  std::variant<std::monostate, FrustumSpace, BoxSpace> space;  ///< W, at most 32,768 resolutions wide; has to be set
   Policies policies;
   std::vector<CameraMargins> margins;  ///< one a camera, in the rig's order
   double rho_m = kDefaultRho;          ///< surveillance radius, from the primitive's surface
   double resolution_m = 0.005;         ///< tightness: the nearest point lies within this (and e_k) of every N_k
-  /// Fastest obstacle. Enters e_k = translation + rotation |x - c_k| + v_max (|t_k - t_ref| + half exposure + time
-  /// uncertainty). With 0 a time skew between cameras is not covered.
+  /// Fastest obstacle. Enters e_k = translation + rotation |x - c_k| + (1 + rotation) v_max (|t_k - t_ref| + half
+  /// exposure + time uncertainty). With 0 a time skew between cameras is not covered.
   double v_max_m_s = std::numeric_limits<double>::quiet_NaN();       ///< has to be set
   double max_frame_age_s = std::numeric_limits<double>::infinity();  ///< older than the newest by more: stale
   double direction_blend = kDefaultBlend;  ///< b in [0, 1] of the hybrid direction: weight of the other obstacles

@@ -7,32 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include "depthgrid/core/blind_layer.hpp"
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/views/held_slots.hpp"
 
 namespace depthgrid::views {
 namespace {
-
-constexpr int kMaxHeld = 13;
-/// Buffers of a camera besides those that held snapshots pin: the newest, and the one that is written next.
-constexpr int kSpareSlots = 2;
-constexpr std::size_t kMaxSlots = kMaxHeld + kSpareSlots;
-/// How often a writer looks for a free buffer. Threads in the middle of snapshot() occupy one for an instant.
-constexpr int kAttempts = 100;
 
 /// Moves the space of interest farther than any distance between two places in it (cf. kLargestTranslation): a camera
 /// whose time is not known frees nothing.
 constexpr double kUnboundedMotion = 1e9;
 
 constexpr FrameUpdate kNoCamera{UpdateResult::unusable, "the rig has no such camera"};
-
-/// The index of every camera's newest buffer, four bits a camera.
-std::size_t slot_of(std::uint64_t slots, std::size_t camera) noexcept {
-  return static_cast<std::size_t>(slots >> (4 * camera)) & 15U;
-}
-
-std::uint64_t with_slot(std::uint64_t slots, std::size_t camera, std::size_t slot) noexcept {
-  return (slots & ~(std::uint64_t{15} << (4 * camera))) | (std::uint64_t{slot} << (4 * camera));
-}
 
 /// What pose_from_matrix() and validate(Rig) accept, without throwing.
 bool is_valid(const Pose& pose) noexcept {
@@ -65,35 +51,19 @@ bool is_valid(const Pose& pose) noexcept {
 struct ViewStore::State {
   struct alignas(64) Camera {
     std::vector<View> views;
-    mutable std::array<std::atomic<std::uint32_t>, kMaxSlots> references{};
+    mutable SlotReferences references{};
   };
 
   State(const Rig& rig_in, Settings settings_in, int held_snapshots)
       : rig(checked_rig(rig_in, "view store")), settings(std::move(settings_in)), cameras(rig.cameras.size()) {
     views::validate(settings, rig);
-    if (held_snapshots < 1 || held_snapshots > kMaxHeld) {
-      fail("view store: held_snapshots is ", held_snapshots, ", must be between 1 and ", kMaxHeld);
-    }
+    const std::size_t slots = slots_for(held_snapshots, "view store");
     for (std::size_t k = 0; k < cameras.size(); ++k) {
       // Buffer 0 is the newest at first; without a frame it frees nothing.
-      for (int slot = 0; slot < held_snapshots + kSpareSlots; ++slot) {
+      for (std::size_t slot = 0; slot < slots; ++slot) {
         cameras[k].views.emplace_back(rig.cameras[k], settings.margins[k], settings.policies);
       }
     }
-  }
-
-  /// A buffer that nobody reads and that is not the newest; views.size() when there is none.
-  [[nodiscard]] std::size_t free_slot(std::size_t camera) const noexcept {
-    const Camera& c = cameras[camera];
-    const std::size_t newest_slot = slot_of(newest.load(), camera);
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      for (std::size_t slot = 0; slot < c.views.size(); ++slot) {
-        if (slot != newest_slot && c.references[slot].load() == 0) {
-          return slot;
-        }
-      }
-    }
-    return c.views.size();
   }
 
   /// For the camera's writer, or whoever holds it.
@@ -103,8 +73,8 @@ struct ViewStore::State {
 
   /// With a pose that is not a rigid transform the camera stays where it was.
   FrameUpdate update(std::size_t camera, const Frame& frame, const Pose& T_world_camera) noexcept {
-    const std::size_t slot = free_slot(camera);
     std::vector<View>& views = cameras[camera].views;
+    const std::size_t slot = free_slot(cameras[camera].references, views.size(), slot_of(newest.load(), camera));
     if (slot == views.size()) {
       return {UpdateResult::dropped, "held snapshots occupy every buffer of this camera"};
     }
@@ -119,22 +89,18 @@ struct ViewStore::State {
                    : "the pose is not a rigid transform: not finite, not a rotation, or farther than the largest "
                      "translation";
     }
-    std::uint64_t slots = newest.load();
-    while (!newest.compare_exchange_weak(slots, with_slot(slots, camera, slot))) {
-    }
-    return {reason == nullptr ? UpdateResult::taken : UpdateResult::unusable, reason};
+    make_newest(newest, camera, slot);
+    return reason == nullptr ? FrameUpdate{} : FrameUpdate{UpdateResult::unusable, reason};
   }
 
   [[nodiscard]] std::uint64_t acquire() const noexcept {
-    while (true) {
-      const std::uint64_t slots = newest.load();
-      for (std::size_t k = 0; k < cameras.size(); ++k) {
-        cameras[k].references[slot_of(slots, k)].fetch_add(1);
-      }
-      if (newest.load() == slots) {
-        return slots;
-      }
-      release(slots);
+    return hold_newest(
+        newest, [this](std::uint64_t slots) { hold(slots); }, [this](std::uint64_t slots) { release(slots); });
+  }
+
+  void hold(std::uint64_t slots) const noexcept {
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+      cameras[k].references[slot_of(slots, k)].fetch_add(1);
     }
   }
 
@@ -166,11 +132,12 @@ FrameUpdate ViewStore::update(std::size_t camera, const Frame& frame, const Pose
   return camera < state_->cameras.size() ? state_->update(camera, frame, T_world_camera) : kNoCamera;
 }
 
-Snapshot ViewStore::snapshot() const noexcept { return Snapshot(*state_); }
+Snapshot ViewStore::snapshot() const noexcept { return snapshot(-std::numeric_limits<double>::infinity()); }
+Snapshot ViewStore::snapshot(double oldest_s) const noexcept { return {*state_, oldest_s}; }
 const Rig& ViewStore::rig() const noexcept { return state_->rig; }
 const Settings& ViewStore::settings() const noexcept { return state_->settings; }
 
-Snapshot::Snapshot(const ViewStore::State& state) noexcept : state_(&state), slots_(state.acquire()) {
+Snapshot::Snapshot(const ViewStore::State& state, double oldest_s) noexcept : state_(&state), slots_(state.acquire()) {
   const Settings& settings = state.settings;
   double newest_s = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < camera_count(); ++k) {
@@ -183,11 +150,18 @@ Snapshot::Snapshot(const ViewStore::State& state) noexcept : state_(&state), slo
     const CameraMargins& margins = settings.margins[k];
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     const double age_s = std::isfinite(view(k).time_s()) ? reference_time_s_ - view(k).time_s() : kUnknown;
-    const double motion_m = settings.v_max_m_s * (age_s + margins.half_exposure_s + margins.time_uncertainty_s);
+    const double motion_m =
+        motion_margin_m(margins, settings.v_max_m_s * (age_s + margins.half_exposure_s + margins.time_uncertainty_s));
     const double bounded_m = motion_m <= kUnboundedMotion ? motion_m : kUnboundedMotion;
-    // What does not move is where it was, whenever that was.
-    pose_margins_[k] = {margins.translation_m, margins.rotation_rad, settings.v_max_m_s > 0 ? bounded_m : 0.0};
-    stale_ = stale_ || !view(k).present() || !(age_s <= settings.max_frame_age_s);
+    // With a clock to ask, an image that does not say when it was taken may be of any age.
+    const bool timeless = std::isfinite(oldest_s) && !std::isfinite(view(k).time_s());
+    const bool is_late = view(k).present() && (timeless || view(k).time_s() < oldest_s);
+    late_ |= is_late ? std::uint32_t{1} << k : 0;
+    // What does not move is where it was, whenever that was; but nobody knows for how long that holds.
+    const double moved_m = is_late ? kUnboundedMotion : settings.v_max_m_s > 0 ? bounded_m : 0.0;
+    pose_margins_[k] = {margins.translation_m, margins.rotation_rad, moved_m};
+    blind_m_ = thicker(blind_m_, view(k).blind_m());
+    stale_ = stale_ || is_late || !view(k).present() || !(age_s <= settings.max_frame_age_s);
   }
 }
 
@@ -196,6 +170,8 @@ Snapshot::Snapshot(Snapshot&& other) noexcept
       slots_(other.slots_),
       pose_margins_(other.pose_margins_),
       reference_time_s_(other.reference_time_s_),
+      blind_m_(other.blind_m_),
+      late_(other.late_),
       stale_(other.stale_) {}
 
 Snapshot& Snapshot::operator=(Snapshot&& other) noexcept {
@@ -205,6 +181,8 @@ Snapshot& Snapshot::operator=(Snapshot&& other) noexcept {
     slots_ = other.slots_;
     pose_margins_ = other.pose_margins_;
     reference_time_s_ = other.reference_time_s_;
+    blind_m_ = other.blind_m_;
+    late_ = other.late_;
     stale_ = other.stale_;
   }
   return *this;

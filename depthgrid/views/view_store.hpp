@@ -42,6 +42,9 @@ class ViewStore {
   /// known free.
   /// t_ref is the newest exposure. The store must outlive the snapshot.
   [[nodiscard]] Snapshot snapshot() const noexcept;
+  /// Images that were exposed before `oldest_s` are late: they free nothing, and the snapshot is stale. So is an
+  /// image without a time, unless oldest_s is not finite.
+  [[nodiscard]] Snapshot snapshot(double oldest_s) const noexcept;
 
   [[nodiscard]] const Rig& rig() const noexcept;
   [[nodiscard]] const Settings& settings() const noexcept;
@@ -64,26 +67,35 @@ class Snapshot {
 
   [[nodiscard]] std::size_t camera_count() const noexcept;
   [[nodiscard]] const View& view(std::size_t camera) const noexcept;
-  /// e_k of this snapshot; time_m = v_max (|t_k - t_ref| + half exposure + time uncertainty).
+  /// e_k of this snapshot; time_m = (1 + rotation) v_max (|t_k - t_ref| + half exposure + time
+  /// uncertainty), see motion_margin_m().
   [[nodiscard]] const PoseMargin& pose_margin(std::size_t camera) const noexcept;
+  /// Its image is older than was asked for, so it frees nothing.
+  [[nodiscard]] bool late(std::size_t camera) const noexcept { return ((late_ >> camera) & 1U) != 0; }
+  /// A bit a camera: late().
+  [[nodiscard]] std::uint32_t late_cameras() const noexcept { return late_; }
   [[nodiscard]] const RigCamera& camera(std::size_t camera) const noexcept;
   /// Where the camera was at its newest frame, usable or not; where the rig says while there is none.
   [[nodiscard]] const Pose& T_world_camera(std::size_t camera) const noexcept;
   [[nodiscard]] const Settings& settings() const noexcept;
   /// Newest exposure of all cameras present; NaN when there is none.
   [[nodiscard]] double reference_time_s() const noexcept { return reference_time_s_; }
-  /// A camera is missing, has no finite time, or is older than the newest by more than max_frame_age_s.
+  /// A camera is missing, late, has no finite time, or is older than the newest by more than max_frame_age_s.
   [[nodiscard]] bool stale() const noexcept { return stale_; }
+  /// Answer::blind_m of everything asked of this snapshot: the thickest layer of its images.
+  [[nodiscard]] double blind_m() const noexcept { return blind_m_; }
 
  private:
   friend class ViewStore;
-  explicit Snapshot(const ViewStore::State& state) noexcept;
+  Snapshot(const ViewStore::State& state, double oldest_s) noexcept;
   void release() noexcept;
 
   const ViewStore::State* state_ = nullptr;
   std::uint64_t slots_ = 0;
   std::array<PoseMargin, kMaxCameras> pose_margins_{};
   double reference_time_s_ = 0;
+  double blind_m_ = 0;
+  std::uint32_t late_ = 0;
   bool stale_ = false;
 };
 

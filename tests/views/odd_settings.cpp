@@ -50,6 +50,8 @@ class Odd {
     m.rotation_rad = number();
     m.half_exposure_s = number();
     m.time_uncertainty_s = number();
+    m.smallest_obstacle_m = number();
+    m.second_view_x_m = number();
     return m;
   }
   Policies policies() {
@@ -74,7 +76,7 @@ std::vector<Rig> odd_rigs() {
       camera.id = odd.text();
       camera.intrinsics = {odd.integer(-1, 999), odd.integer(-1, 999), odd.number(),
                            odd.number(),         odd.number(),         odd.number()};
-      camera.distortion.model = static_cast<Distortion::Model>(odd.integer(0, 2));
+      camera.distortion.model = static_cast<Distortion::Model>(odd.integer(0, 3));
       for (double& coefficient : camera.distortion.coefficients) {
         coefficient = odd.number();
       }

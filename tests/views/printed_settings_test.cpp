@@ -24,12 +24,13 @@ bool same(const Eigen::MatrixBase<Derived>& a, const Eigen::MatrixBase<Derived>&
 }
 bool same(const Pose& a, const Pose& b) { return same(a.matrix(), b.matrix()); }
 bool same(const CameraMargins& a, const CameraMargins& b) {
-  const auto& [sensor, translation, rotation, exposure, time] = a;
+  const auto& [sensor, translation, rotation, exposure, time, smallest, second_view] = a;
   const auto& [constant, linear, quadratic, lateral] = sensor;
   return same(constant, b.sensor.constant_m) && same(linear, b.sensor.linear) &&
          same(quadratic, b.sensor.quadratic_per_m) && lateral == b.sensor.lateral_px &&
          same(translation, b.translation_m) && same(rotation, b.rotation_rad) && same(exposure, b.half_exposure_s) &&
-         same(time, b.time_uncertainty_s);
+         same(time, b.time_uncertainty_s) && same(smallest, b.smallest_obstacle_m) &&
+         same(second_view, b.second_view_x_m);
 }
 bool same(const FrustumSpace& a, const FrustumSpace& b) {
   const auto& [principal, d_min, d_max] = a;

@@ -72,6 +72,7 @@ RandomCamera random_camera(int width_px, int height_px, std::mt19937_64& random)
   if (draw.one_in(4)) {
     result.margins.sensor = {0, 0, 0, draw.whole(0, 1)};
   }
+  result.margins.smallest_obstacle_m = draw.one_in(3) ? draw.uniform(0.005, 0.3) : 0.0;
   result.policies = {Policy::obstacle, Policy::obstacle, Policy::obstacle, 0};
   if (draw.one_in(2)) {
     result.policies.robot_pockets = Policy::ignored;
@@ -129,6 +130,7 @@ RandomFrame::RandomFrame(const RandomCamera& camera, std::mt19937_64& random) {
   frame_.depth = {data, format, width_px, height_px, row_px == width_px && draw.one_in(2) ? 0 : row_bytes, unit_m};
   if (with_robot) {
     frame_.robot = {near_m_.data(), far_m_.data(), row_px == width_px && draw.one_in(2) ? 0 : row_px};
+    frame_.robot.within_margin = draw.one_in(2);
   }
   if (bottom_up) {
     frame_.depth.data = static_cast<const char*>(data) + row_bytes * (height_px - 1);

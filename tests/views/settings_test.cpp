@@ -1,7 +1,7 @@
 // Every setting that is missing or out of range is refused with its value, the rule and what to do.
 #include "depthgrid/views/settings.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <functional>
 #include <string>
@@ -29,7 +29,7 @@ Settings good() {
   Settings settings;
   settings.space = BoxSpace{{-1, -1, 0}, {1, 1, 2}};
   settings.policies = {Policy::obstacle, Policy::ignored, Policy::obstacle, 0};
-  settings.margins.resize(2);
+  settings.margins.resize(2, CameraMargins{.sensor = {}, .smallest_obstacle_m = 0});
   settings.v_max_m_s = 1.6;
   return settings;
 }
@@ -99,6 +99,17 @@ TEST(SearchSettings, ChecksTheSpace) {
       "without limits is not possible");
 }
 
+TEST(SearchSettings, ChecksTheWidthOfTheSpace) {
+  EXPECT_EQ(message(BoxSpace{{-100, -1, 0}, {100, 1, 2}}),
+            "search settings: the space of interest is up to 200 m wide, must be at most 32768 times the resolution, "
+            "163.84 m: nothing beyond the robot's reach and rho around it is needed");
+  EXPECT_EQ(message([](Settings& s) {
+              s.space = BoxSpace{{-10, -1, 0}, {10, 1, 2}};
+              s.resolution_m = 0.0005;
+            }).substr(0, 58),
+            "search settings: the space of interest is up to 20 m wide,");
+}
+
 TEST(SearchSettings, ChecksThePocket) {
   EXPECT_EQ(message([](Settings& s) { s.policies.ignored_pocket_m = 0.05; }),
             "search settings: ignored_pocket is 0.05 m, must be 0 where pockets behind the robot count as obstacle; "
@@ -122,8 +133,15 @@ TEST(SearchSettings, ChecksTheMarginsOfEveryCamera) {
   EXPECT_EQ(refused(&CameraMargins::rotation_rad, kNaN), start + "rotation is nan rad" + rule);
   EXPECT_EQ(refused(&CameraMargins::half_exposure_s, kInf), start + "half exposure is inf s" + rule);
   EXPECT_EQ(refused(&CameraMargins::time_uncertainty_s, -1), start + "time uncertainty is -1 s" + rule);
+  EXPECT_EQ(refused(&CameraMargins::smallest_obstacle_m, -0.02), start + "smallest obstacle is -0.02 m" + rule);
   EXPECT_EQ(message([](Settings& s) { s.margins[1].sensor.lateral_px = 17; }),
             start + "filter radius is 17 px, must be between 0 and 16");
+}
+
+TEST(SearchSettings, WantTheSmallestObstacleDeclared) {
+  EXPECT_EQ(message([](Settings& s) { s.margins[0].smallest_obstacle_m = 0.05; }), "");
+  EXPECT_THAT(message([](Settings& s) { s.margins[1] = CameraMargins{}; }),
+              testing::StartsWith("search settings: camera 'right': the smallest obstacle is not declared"));
 }
 
 TEST(SearchSettings, ChecksTheNumbers) {

@@ -34,6 +34,7 @@ Settings settings_for(std::size_t count) {
   settings.margins.resize(count);
   for (CameraMargins& margins : settings.margins) {
     margins.sensor.lateral_px = 0;
+    margins.smallest_obstacle_m = 0;
   }
   settings.v_max_m_s = 2;
   return settings;
@@ -119,6 +120,52 @@ TEST(ViewStore, MovedSnapshotsReleaseOnce) {
   }
 }
 
+// Every number of a snapshot goes with it, whatever stood where it goes to.
+TEST(ViewStore, MovedSnapshotsAreWhatTheyWere) {
+  Settings settings = settings_for(2);
+  settings.margins[0].translation_m = 0.01;
+  const std::vector<float> metres(kSide * kSide, 1.0F);
+  const std::vector<float> near_m(kSide * kSide, 0.9F);
+  const std::vector<float> far_m(kSide * kSide, 1.1F);
+  // One with everything: late, stale, a layer, another time; and one with nothing of it.
+  ViewStore full(rig_of(2), settings);
+  ViewStore plain(rig_of(1), settings_for(1));
+  Frame robot{depth_view(metres, kSide, kSide), {near_m.data(), far_m.data(), kSide, 0.05, 2.0}, 3.0};
+  ASSERT_TRUE(full.update(0, robot).taken());
+  ASSERT_TRUE(plain.update(0, Wall(2.0F, 8.0).frame()).taken());
+  const auto expect_full = [](const Snapshot& snapshot) {
+    EXPECT_EQ(snapshot.camera_count(), 2U);
+    EXPECT_TRUE(snapshot.stale());
+    EXPECT_TRUE(snapshot.late(0));
+    EXPECT_EQ(snapshot.late_cameras(), 1U);
+    EXPECT_EQ(snapshot.reference_time_s(), 3.0);
+    EXPECT_NEAR(snapshot.blind_m(), 0.06, 1e-12);
+    EXPECT_EQ(snapshot.pose_margin(0).translation_m, 0.01);
+    EXPECT_GT(free_m(snapshot), 1.0F) << "the robot counts as free";
+  };
+  const auto expect_plain = [](const Snapshot& snapshot) {
+    EXPECT_EQ(snapshot.camera_count(), 1U);
+    EXPECT_FALSE(snapshot.stale());
+    EXPECT_FALSE(snapshot.late(0));
+    EXPECT_EQ(snapshot.reference_time_s(), 8.0);
+    EXPECT_EQ(snapshot.blind_m(), 0);
+    EXPECT_EQ(snapshot.pose_margin(0).translation_m, 0);
+    EXPECT_EQ(free_m(snapshot), 2.0F);
+  };
+  Snapshot a = full.snapshot(4.0);
+  Snapshot b = plain.snapshot(4.0);
+  expect_full(a);
+  expect_plain(b);
+  Snapshot c(std::move(a));
+  expect_full(c);
+  a = std::move(b);
+  expect_plain(a);
+  a = std::move(c);
+  expect_full(a);
+  a = plain.snapshot(4.0);
+  expect_plain(a);
+}
+
 TEST(ViewStore, AnUnusableFrameFreesNothing) {
   ViewStore store(rig_of(2), settings_for(2));
   ASSERT_EQ(store.update(0, Wall(1.0F).frame()).result, UpdateResult::taken);
@@ -132,14 +179,13 @@ TEST(ViewStore, AnUnusableFrameFreesNothing) {
 TEST(ViewStore, SaysWhyAFrameIsUnusable) {
   ViewStore store(rig_of(2), settings_for(2));
   const Wall wall(1.0F);
-  EXPECT_EQ(store.update(0, wall.frame()).reason, nullptr);
-  EXPECT_EQ(store.update(1, wall.frame(), Pose::Identity()).reason, nullptr);
+  EXPECT_STREQ(store.update(0, wall.frame()).reason, "");
+  EXPECT_STREQ(store.update(1, wall.frame(), Pose::Identity()).reason, "");
   const auto expect = [&](const char* words, const auto& change) {
     Frame frame = wall.frame();
     change(frame);
     const FrameUpdate update = store.update(0, frame);
     EXPECT_EQ(update.result, UpdateResult::unusable) << words;
-    ASSERT_NE(update.reason, nullptr) << words;
     EXPECT_NE(std::string(update.reason).find(words), std::string::npos) << update.reason;
   };
   const float some_m = 1.0F;
@@ -152,10 +198,10 @@ TEST(ViewStore, SaysWhyAFrameIsUnusable) {
     f.depth.format = DepthFormat::uint16_units;
     f.depth.metres_per_unit = 0.5;
   });
-  EXPECT_NE(store.update(2, wall.frame()).reason, nullptr) << "no such camera";
+  EXPECT_STREQ(store.update(2, wall.frame()).reason, "the rig has no such camera");
   Pose broken = Pose::Identity();
   broken.translation().x() = kNaN;
-  EXPECT_NE(store.update(0, wall.frame(), broken).reason, nullptr);
+  EXPECT_NE(std::string(store.update(0, wall.frame(), broken).reason).find("rigid"), std::string::npos);
 }
 
 TEST(ViewStore, MovesACameraWithItsFrame) {
@@ -190,8 +236,8 @@ TEST(ViewStore, MovesACameraWithItsFrame) {
 
 TEST(ViewStore, PoseMarginsFollowTheTimes) {
   Settings settings = settings_for(3);
-  settings.margins[0] = {{}, 0.01, 0.002, 0.005, 0.001};
-  settings.margins[1] = {{}, 0.03, 0.004, 0.015, 0.002};
+  settings.margins[0] = {{}, 0.01, 0.002, 0.005, 0.001, 0};
+  settings.margins[1] = {{}, 0.03, 0.004, 0.015, 0.002, 0};
   settings.max_frame_age_s = 0.05;
   ViewStore store(rig_of(3), settings);
   (void)store.update(0, Wall(1.0F, 100.0).frame());
@@ -200,10 +246,10 @@ TEST(ViewStore, PoseMarginsFollowTheTimes) {
   EXPECT_EQ(snapshot.reference_time_s(), 100.0);
   EXPECT_EQ(snapshot.pose_margin(0).translation_m, 0.01);
   EXPECT_EQ(snapshot.pose_margin(0).rotation_rad, 0.002);
-  EXPECT_NEAR(snapshot.pose_margin(0).time_m, 2 * (0.005 + 0.001), 1e-12);
+  EXPECT_NEAR(snapshot.pose_margin(0).time_m, 1.002 * 2 * (0.005 + 0.001), 1e-12);
   EXPECT_EQ(snapshot.pose_margin(1).translation_m, 0.03);
   EXPECT_EQ(snapshot.pose_margin(1).rotation_rad, 0.004);
-  EXPECT_NEAR(snapshot.pose_margin(1).time_m, 2 * (0.04 + 0.015 + 0.002), 1e-12);
+  EXPECT_NEAR(snapshot.pose_margin(1).time_m, 1.004 * 2 * (0.04 + 0.015 + 0.002), 1e-12);
   EXPECT_TRUE(snapshot.stale()) << "camera 2 is missing";
   (void)store.update(2, Wall(1.0F, 99.97).frame());
   EXPECT_FALSE(store.snapshot().stale());

@@ -32,6 +32,7 @@ ViewStore make_store() {
   settings.margins.resize(kCameras);
   for (CameraMargins& margins : settings.margins) {
     margins.sensor.lateral_px = 0;
+    margins.smallest_obstacle_m = 0;
   }
   settings.v_max_m_s = 2;
   return ViewStore(rig, settings, kReaders);
@@ -77,8 +78,8 @@ int number_of(const View& view) {
   const PyramidLevel& top = image.levels.back();
   const std::size_t texels = top.offset + static_cast<std::size_t>(top.width) * static_cast<std::size_t>(top.height);
   for (std::size_t i = 0; i < texels; ++i) {
-    whole = whole && image.minima_m[i] == depth_m && image.island_near_maxima_m[i] == depth_m + 0.25F &&
-            image.island_far_minima_m[i] == depth_m + 0.5F;
+    whole = whole && image.minima_m[i] == depth_m && image.second_near_maxima_m[i] == depth_m + 0.25F &&
+            image.second_far_minima_m[i] == depth_m + 0.5F;
   }
   return whole ? number : -1;
 }

@@ -5,6 +5,7 @@
 #include <hwy/highway.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "depthgrid/views/prepared_image.hpp"
@@ -54,8 +55,8 @@ std::vector<std::uint32_t> bits(const View& view) {
   if (image.has_islands) {
     append(image.island_near_m.data(), pixels);
     append(image.island_far_m.data(), pixels);
-    append(image.island_near_maxima_m.data(), texels);
-    append(image.island_far_minima_m.data(), texels);
+    append(image.second_near_maxima_m.data(), texels);
+    append(image.second_far_minima_m.data(), texels);
   }
   return result;
 }
@@ -179,6 +180,28 @@ TEST(View, IgnoredPocketsAreKnownFreeBehindTheRobotOnly) {
   EXPECT_NEAR(view.free_m(3, 0), 2.75, 2e-6);
   c.policies = {Policy::obstacle, Policy::obstacle, Policy::obstacle, 0};
   EXPECT_EQ(c.view().free_m(3, 0), 2.5F);
+}
+
+TEST(View, ASmallHoleFreesSpaceAndIsNoReading) {
+  SmallCamera c;
+  c.camera.intrinsics = {20, 16, 100, 100, 10, 8};
+  c.units = std::vector<std::uint16_t>(320, 2000);
+  c.units[8 * 20 + 10] = 0;
+  c.near_m = c.far_m = std::vector<float>(320, 0.0F);
+  const Frame frame{depth_view(c.units, 20, 16, 0.001), {}, 1.0};
+  const auto free_m = [&](double smallest_obstacle_m) {
+    c.margins.smallest_obstacle_m = smallest_obstacle_m;
+    View view(c.camera, c.margins, c.policies);
+    EXPECT_TRUE(view.update(frame, Pose::Identity()));
+    EXPECT_EQ(view.measured_m(10, 8), 0.0F) << smallest_obstacle_m;
+    EXPECT_EQ(view.measured_m(9, 8), 2.0F) << smallest_obstacle_m;
+    return static_cast<double>(view.free_m(10, 8));
+  };
+  EXPECT_EQ(free_m(0), 0.0);
+  const double at_the_corner_px = 100 / std::hypot(1, 0.1, 0.08);
+  EXPECT_NEAR(free_m(0.02), 0.02 * at_the_corner_px / 2 - 0.01, 1.1e-3)
+      << "s f / W less half of s: nearer, it would be wider";
+  EXPECT_NEAR(free_m(0.08), 2.0 - 0.04, 1.1e-3) << "what stands around it less half of s";
 }
 
 TEST(View, FreesNothingWhenTheFrameIsUnusable) {

@@ -1,9 +1,9 @@
 // Which boxes a camera knows to be free. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_KNOWN_FREE_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_KNOWN_FREE_INL
-#undef DEPTHGRID_SEARCH_KNOWN_FREE_INL
+#if defined(DEPTHGRID_VIEWS_KNOWN_FREE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_KNOWN_FREE_INL
+#undef DEPTHGRID_VIEWS_KNOWN_FREE_INL
 #else
-#define DEPTHGRID_SEARCH_KNOWN_FREE_INL
+#define DEPTHGRID_VIEWS_KNOWN_FREE_INL
 #endif
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "depthgrid/search/boxes-inl.hpp"
-#include "depthgrid/search/pixel_bounds.hpp"
+#include "depthgrid/views/boxes-inl.hpp"
+#include "depthgrid/views/pixel_bounds.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::octants::HWY_NAMESPACE {
 
 /// Rectangles of pixels, one a lane, and the few texels of one level that cover all of them.
 struct Footprint {
@@ -79,7 +79,7 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
                                    V z_high) {
   const Floats d;
   const Ints di;
-  const views::PreparedImage& image = *camera.image;
+  const PreparedImage& image = *camera.image;
   const M near_blind = hn::Le(z_low, hn::Set(d, camera.blind_m));
   const I width = hn::Set(di, camera.width_px);
   for (int j = 0; j < side; ++j) {
@@ -101,17 +101,17 @@ HWY_INLINE M free_or_island_pixels(const LocalCamera& camera, M left, I u0, I u1
   return left;
 }
 
-/// Lanes of `left` that lie in islands in every texel.
-HWY_INLINE M island_texels(const LocalCamera& camera, M left, const Footprint& at, V z_low, V z_high) {
+/// Lanes of `left` that lie in the second interval of every pixel of every texel.
+HWY_INLINE M in_second_interval(const LocalCamera& camera, M left, const Footprint& at, V z_low, V z_high) {
   const Floats d;
-  const views::PreparedImage& image = *camera.image;
+  const PreparedImage& image = *camera.image;
   const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
   const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
-  left = hn::And(left, hn::Ge(z_low, extremum(camera, at, image.island_near_maxima_m.data(), max)));
+  left = hn::And(left, hn::Ge(z_low, extremum(camera, at, image.second_near_maxima_m.data(), max)));
   if (hn::AllFalse(d, left)) {
     return left;
   }
-  return hn::And(left, hn::Le(z_high, extremum(camera, at, image.island_far_minima_m.data(), min)));
+  return hn::And(left, hn::Lt(z_high, extremum(camera, at, image.second_far_minima_m.data(), min)));
 }
 
 /// Lanes of `asked` that are known free to the camera: seen free, or robot. Their rectangles lie in the image.
@@ -143,7 +143,7 @@ HWY_INLINE M known_free(const LocalCamera& camera, M asked, const Rectangle& r, 
   constexpr int kFewPixels = 4;
   return hn::Or(free, at.last < kFewPixels
                           ? free_or_island_pixels(camera, left, u0, u1, v0, v1, at.last + 1, z_low, z_high)
-                          : island_texels(camera, left, at, z_low, z_high));
+                          : in_second_interval(camera, left, at, z_low, z_high));
 }
 
 /// Lanes that are known free to the camera as a whole.
@@ -164,7 +164,7 @@ HWY_INLINE M known_free_in_view(const LocalCamera& camera, const Clip& clip, con
   const V zero = hn::Zero(d);
   const V z_low = hn::Max(b.z_low, hn::Set(d, clip.low_m));
   const V z_high = hn::Min(b.z_high, hn::Set(d, clip.high_m));
-  const V tiny = hn::Set(d, 1e-6F);
+  const V tiny = hn::Set(d, kFirstDepth_m);
   const Rectangle whole = project(camera, b, hn::Max(z_low, tiny), hn::Max(z_high, tiny));
   const M empty = hn::Or(hn::Or(hn::Or(hn::Lt(z_high, z_low), hn::Lt(z_high, tiny)),
                                 hn::Or(hn::Lt(whole.u_high, zero), hn::Ge(whole.u_low, hn::Set(d, camera.width)))),
@@ -179,7 +179,7 @@ HWY_INLINE M known_free_in_view(const LocalCamera& camera, const Clip& clip, con
   return hn::Or(empty, known_free(camera, hn::Not(empty), r, z_low, z_high, pixels));
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::octants::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

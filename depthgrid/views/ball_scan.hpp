@@ -1,9 +1,9 @@
 // Which pixels a ball may meet in one camera's image: all that need an exact test, and few others. Internal.
 #pragma once
 
-#include "depthgrid/search/local_camera.hpp"
+#include "depthgrid/views/local_camera.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Pixels, inclusive.
 struct Window {
@@ -29,4 +29,4 @@ inline constexpr int kMaxScanned = 256;
 [[nodiscard]] bool scan(const LocalCamera& camera, const ScannedBall& ball,
                         bool (*meets)(const void* context, int u, int v), const void* context) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -1,9 +1,9 @@
-#include "depthgrid/search/pixel_bounds.hpp"
+#include "depthgrid/views/pixel_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 /// Of a rectangle in continuous coordinates.
@@ -12,17 +12,19 @@ bool may_have_islands(const LocalCamera& camera, float u_low, float u_high, floa
     return false;
   }
   const auto pixel = [](float at, float size) { return static_cast<int>(std::clamp(at, 0.0F, size - 1)); };
-  const views::PixelRange columns{pixel(u_low, camera.width), pixel(u_high, camera.width) + 1};
-  const int last = pixel(v_high, camera.height) / views::PreparedImage::kBandRows;
-  for (int band = pixel(v_low, camera.height) / views::PreparedImage::kBandRows; band <= last; ++band) {
-    if (!views::common(columns, camera.image->island_bands[static_cast<std::size_t>(band)]).empty()) {
+  const PixelRange columns{pixel(u_low, camera.width), pixel(u_high, camera.width) + 1};
+  const int last = pixel(v_high, camera.height) / PreparedImage::kBandRows;
+  for (int band = pixel(v_low, camera.height) / PreparedImage::kBandRows; band <= last; ++band) {
+    if (!common(columns, camera.image->island_bands[static_cast<std::size_t>(band)]).empty()) {
       return true;
     }
   }
   return false;
 }
 
-PixelBounds pixel_bounds_of(const LocalCamera& camera, const Cube& parent, float half_m) noexcept {
+}  // namespace
+
+PixelBounds pixel_bounds(const LocalCamera& camera, const Cube& parent, float half_m) noexcept {
   const auto& r = camera.rotation;
   const auto& a = camera.absolute_rotation;
   const float x = r[0] * parent.x + r[1] * parent.y + r[2] * parent.z + camera.offset_m[0];
@@ -61,15 +63,4 @@ PixelBounds pixel_bounds_of(const LocalCamera& camera, const Cube& parent, float
   return result;
 }
 
-}  // namespace
-
-PixelBounds pixel_bounds(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept {
-  PixelBounds all;
-  for (const Cube& parent : parents) {
-    const PixelBounds one = pixel_bounds_of(camera, parent, half_m);
-    all = {std::max(all.widest_px, one.widest_px), all.islands || one.islands};
-  }
-  return all;
-}
-
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

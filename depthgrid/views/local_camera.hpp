@@ -10,7 +10,7 @@
 #include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/view_store.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// What of space counts when a camera is asked whether it frees a set.
 struct Clip {
@@ -30,6 +30,10 @@ struct Texels {
   std::int32_t back = 0;
 };
 
+/// Where a camera's view begins to count, however near it looks: by so little that even a ray that leaves nearly along
+/// the camera's plane stands still, and by so much that its slope is a number.
+inline constexpr float kFirstDepth_m = 1e-12F;
+
 struct LocalCamera {
   static constexpr std::size_t kMaxTexels = 16;
   // Single precision: what the cube split reads. x_camera = rotation x_local + offset.
@@ -46,7 +50,7 @@ struct LocalCamera {
   const float* free_m = nullptr;
   const float* minima_m = nullptr;
   std::array<Texels, kMaxTexels> texels{};
-  const views::PyramidLevel* levels = nullptr;
+  const PyramidLevel* levels = nullptr;
   int level_count = 0;
   int width_px = 0;
   bool has_pose_error = false;
@@ -63,7 +67,7 @@ struct LocalCamera {
   PinholeCamera pinhole;
   double near_m = 0;
   PoseMargin pose_margin;
-  const views::PreparedImage* image = nullptr;
+  const PreparedImage* image = nullptr;
 
   [[nodiscard]] Eigen::Vector3d to_camera(const Eigen::Vector3d& x_local) const noexcept {
     return R_camera_world * x_local + offset_camera_m;
@@ -75,7 +79,7 @@ struct LocalCamera {
 };
 
 /// Everything of `snapshot` relative to origin_world, for points within extent_m of it.
-void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world,
-                double extent_m, LocalCamera& local) noexcept;
+void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world, double extent_m,
+                LocalCamera& local) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "depthgrid/search/local_camera.hpp"
+#include "depthgrid/views/local_camera.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// Whether x, in front of the camera (z > 0), lies in its image. Metres, camera frame.
 [[nodiscard]] bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camera) noexcept;
@@ -14,4 +14,4 @@ namespace depthgrid::search {
 /// slack and pose error at x. The double-precision form of what the cube split hints at.
 [[nodiscard]] bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double slack_m) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

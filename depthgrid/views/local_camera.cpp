@@ -1,4 +1,4 @@
-#include "depthgrid/search/local_camera.hpp"
+#include "depthgrid/views/local_camera.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,20 +6,20 @@
 
 #include "depthgrid/core/rounding.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr double kEpsilon = 0x1p-24;  ///< half an ulp of 1 in single precision
 
 Clip view_between(double d_min_m, double d_max_m) noexcept {
-  return {true, d_min_m, d_max_m, std::max(float_below(d_min_m), 1e-6F), float_above(d_max_m)};
+  return {true, d_min_m, d_max_m, std::max(float_below(d_min_m), kFirstDepth_m), float_above(d_max_m)};
 }
 
 }  // namespace
 
-void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world,
-                double extent_m, LocalCamera& local) noexcept {
-  const views::PreparedImage& image = views::prepared(snapshot.view(camera));
+void make_local(const Snapshot& snapshot, std::size_t camera, const Eigen::Vector3d& origin_world, double extent_m,
+                LocalCamera& local) noexcept {
+  const PreparedImage& image = prepared(snapshot.view(camera));
   const RigCamera& rig_camera = snapshot.camera(camera);
   const Pose& T_world_camera = snapshot.T_world_camera(camera);
   local.image = &image;
@@ -65,12 +65,12 @@ void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen
   local.level_count = static_cast<int>(image.levels.size());
   local.texels[0] = {0, image.free_m.width_px(), 0, 0};
   for (int level = 0; level < local.level_count && level + 1 < static_cast<int>(local.texels.size()); ++level) {
-    const views::PyramidLevel& from = image.levels[static_cast<std::size_t>(level)];
+    const PyramidLevel& from = image.levels[static_cast<std::size_t>(level)];
     local.texels[static_cast<std::size_t>(level) + 1] = {from.offset, from.width, level, 3};
   }
   local.width_px = image.free_m.width_px();
   local.has_islands = image.has_islands;
-  const auto* frustum = std::get_if<views::FrustumSpace>(&snapshot.settings().space);
+  const auto* frustum = std::get_if<FrustumSpace>(&snapshot.settings().space);
   const bool is_principal = frustum != nullptr && frustum->principal == camera;
   local.space = is_principal && !local.has_pose_error ? view_between(frustum->d_min_m, frustum->d_max_m) : Clip{};
   // Covered is what lies beyond the blind zone, its end excluded.
@@ -81,4 +81,4 @@ void make_local(const views::Snapshot& snapshot, std::size_t camera, const Eigen
   local.coverage.low_m = std::max(local.coverage.low_m, float_above(static_cast<double>(local.blind_m)));
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -1,9 +1,9 @@
-#include "depthgrid/search/blocking_point.hpp"
+#include "depthgrid/views/blocking_point.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 bool projects_inside(const PinholeCamera& camera, const Eigen::Vector3d& x_camera) noexcept {
   const DepthPoint pixel = project(camera, x_camera);
@@ -29,7 +29,7 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
   const double part_u = at.x_px - u;
   const double part_v = at.y_px - v;
   const double slack = slack_m + (camera.has_pose_error ? camera.pose_error(x) : 0.0);
-  const double tangent = std::hypot(x.x(), x.y()) / x.z();
+  const double tangent = x.head<2>().norm() / x.z();
   // Beside x at lateral distance s begins a pixel whose border has the tangent t to the optical axis; a depth h beyond
   // x is within the slack there if (s + t h)^2 + h^2 <= slack^2, so if h <= c sqrt(slack^2 - s^2 c^2) - s t c^2, c^2 (1
   // + t^2) = 1.
@@ -52,4 +52,4 @@ bool blocks(const LocalCamera& camera, const Eigen::Vector3d& x_local, double sl
          reaches(u, part_v < 0.5 ? v - 1 : v + 1, std::min(part_v, 1 - part_v) * x.z() / c.fy_px);
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

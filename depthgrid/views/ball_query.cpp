@@ -1,4 +1,4 @@
-#include "depthgrid/search/ball_query.hpp"
+#include "depthgrid/views/ball_query.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "depthgrid/core/pixel_frustum.hpp"
-#include "depthgrid/search/ball_scan.hpp"
+#include "depthgrid/views/ball_scan.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -40,7 +40,7 @@ struct Ball {
 
   /// The two parts of a pixel's frustum that are not known free, each less the robot's island.
   [[nodiscard]] bool meets_pixel(int u, int v) const noexcept {
-    const views::PreparedImage& image = *camera.image;
+    const PreparedImage& image = *camera.image;
     const auto free_m = static_cast<double>(image.free_m.at(u, v));
     const double start_m = free_m > camera.near_m ? free_m : camera.near_m;
     const Window pixel{u, v, u, v};
@@ -87,7 +87,7 @@ struct Ball {
   [[nodiscard]] double smallest(int level, int i, int j) const noexcept {
     if (level >= 2) {
       // The texel two levels down covers this block exactly.
-      const views::PyramidLevel& texels = camera.levels[level - 2];
+      const PyramidLevel& texels = camera.levels[level - 2];
       return static_cast<double>(camera.minima_m[texels.offset + 4 * j * texels.width + 4 * i]);
     }
     const int last_u = camera.pinhole.width_px - 1;
@@ -181,4 +181,4 @@ bool covers_some(const LocalCamera& camera, const Eigen::Vector3d& p_camera, dou
   return p_camera.z() + radius_m >= camera.near_m && inside_image_m(camera.pinhole, p_camera) >= -radius_m;
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

@@ -1,4 +1,4 @@
-#include "depthgrid/search/ball_scan.hpp"
+#include "depthgrid/views/ball_scan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,13 +6,13 @@
 #include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "depthgrid/search/ball_scan.cpp"
+#define HWY_TARGET_INCLUDE "depthgrid/views/ball_scan.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target: it must be seen once for each target.
 #include "depthgrid/core/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
+namespace depthgrid::views::HWY_NAMESPACE {
 using namespace lanes::HWY_NAMESPACE;
 constexpr float kNever = -1e30F;
 /// A window of at most so many pixels a side is looked at pixel by pixel; larger ones by blocks first.
@@ -72,8 +72,8 @@ HWY_INLINE void measure(float across_m, float depth_m, float radius_m, float foc
 /// A row of pixels or blocks: where their depths stand.
 struct Depths {
   const float* free_m;
-  const float* island_near_m;  ///< null without islands
-  const float* island_far_m;
+  const float* second_near_m;  ///< null without islands; of pixels the island itself
+  const float* second_far_m;
 };
 
 /// Lanes in which the ball may meet what is not known free. Indices into the row's depths: at `index` if strided, else
@@ -97,9 +97,9 @@ HWY_INLINE M may_meet(const Sides& columns, std::size_t column, const Sides& row
   if (hn::AllFalse(d, met)) {
     return met;
   }
-  if (depths.island_near_m != nullptr) {
+  if (depths.second_near_m != nullptr) {
     const V nearest = hn::Max(hn::Load(d, columns.nearest_m.data() + column), hn::Set(d, rows.nearest_m[row]));
-    met = hn::AndNot(hn::And(hn::Gt(nearest, read(depths.island_near_m)), hn::Lt(deepest, read(depths.island_far_m))),
+    met = hn::AndNot(hn::And(hn::Gt(nearest, read(depths.second_near_m)), hn::Lt(deepest, read(depths.second_far_m))),
                      met);
   }
   // Where the centre lies outside both planes the edge between them may be out of reach though neither plane is.
@@ -172,13 +172,13 @@ bool scan_blocks(const LocalCamera& camera, const ScannedBall& ball, int level, 
   measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, j0, 1 << level, j1 - j0 + 1, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
   // The texel two levels down covers a block exactly.
-  const views::PyramidLevel& texels = camera.levels[level - 2];
+  const PyramidLevel& texels = camera.levels[level - 2];
   for (int j = j0; j <= j1; ++j) {
     const auto row = static_cast<std::size_t>(j - j0);
     const std::ptrdiff_t start = texels.offset + static_cast<std::ptrdiff_t>(4) * j * texels.width;
     const Depths depths{camera.minima_m + start,
-                        camera.has_islands ? camera.image->island_near_maxima_m.data() + start : nullptr,
-                        camera.has_islands ? camera.image->island_far_minima_m.data() + start : nullptr};
+                        camera.has_islands ? camera.image->second_near_maxima_m.data() + start : nullptr,
+                        camera.has_islands ? camera.image->second_far_minima_m.data() + start : nullptr};
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
       const I block = hn::Min(hn::Iota(di, i0 + i), hn::Set(di, last));
       const M met = may_meet<true>(across, static_cast<std::size_t>(i), down, row, square_radius, depths,
@@ -211,11 +211,11 @@ bool scan_lanes(const LocalCamera& camera, const ScannedBall& ball, bool (*meets
                     : scan_blocks(camera, ball, level, {meets, context});
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 HWY_EXPORT(scan_lanes);
 
@@ -230,5 +230,5 @@ bool scan(const LocalCamera& camera, const ScannedBall& ball, bool (*meets)(cons
   return HWY_DYNAMIC_DISPATCH(scan_lanes)(camera, ball, meets, context);
 }
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views
 #endif

@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-#include "depthgrid/search/local_camera.hpp"
+#include "depthgrid/views/local_camera.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 /// True when the closed ball of radius_m around p_camera meets the camera's not known free set less the robot's
 /// islands, within `clip`: everything outside the view (unless clip.to_view), the blind zone, and each pixel's frustum
@@ -17,4 +17,4 @@ namespace depthgrid::search {
 /// measured.
 [[nodiscard]] bool covers_some(const LocalCamera& camera, const Eigen::Vector3d& p_camera, double radius_m) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views

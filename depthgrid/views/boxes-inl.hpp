@@ -1,17 +1,16 @@
 // Boxes in a camera's frame and in its image, one a lane. Included once for each instruction set. Internal.
-#if defined(DEPTHGRID_SEARCH_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef DEPTHGRID_SEARCH_BOXES_INL
-#undef DEPTHGRID_SEARCH_BOXES_INL
+#if defined(DEPTHGRID_VIEWS_BOXES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef DEPTHGRID_VIEWS_BOXES_INL
+#undef DEPTHGRID_VIEWS_BOXES_INL
 #else
-#define DEPTHGRID_SEARCH_BOXES_INL
+#define DEPTHGRID_VIEWS_BOXES_INL
 #endif
 
-#include "depthgrid/core/lanes-inl.hpp"
-#include "depthgrid/search/local_camera.hpp"
+#include "depthgrid/views/eight_lanes-inl.hpp"
+#include "depthgrid/views/local_camera.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace depthgrid::search::HWY_NAMESPACE {
-using namespace lanes::HWY_NAMESPACE;
+namespace depthgrid::views::octants::HWY_NAMESPACE {
 
 /// Boxes, one a lane: centre and half sides along the world's axes.
 struct Boxes {
@@ -67,7 +66,7 @@ HWY_INLINE Rectangle project(const LocalCamera& camera, const Bounds& b, V z_low
           hn::Add(hn::Mul(most(b.y_high), fy), hn::Set(d, camera.cy + camera.guard_px))};
 }
 
-}  // namespace depthgrid::search::HWY_NAMESPACE
+}  // namespace depthgrid::views::octants::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

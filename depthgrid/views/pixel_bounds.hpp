@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "depthgrid/search/frontier.hpp"
-#include "depthgrid/search/local_camera.hpp"
+#include "depthgrid/views/cube.hpp"
+#include "depthgrid/views/local_camera.hpp"
 
-namespace depthgrid::search {
+namespace depthgrid::views {
 
 struct PixelBounds {
   /// Pixels between the first and the last that any child projects to, at most.
@@ -15,8 +14,8 @@ struct PixelBounds {
   bool islands = false;  ///< whether there may be some of the robot's islands among them
 };
 
-/// Of all children of these cubes, half_m half a side. In scalar arithmetic from the parents alone, because what it
+/// Of all children of this cube, half_m half a side. In scalar arithmetic from the parent alone, because what it
 /// decides must not depend on how many children an instruction set looks at at once.
-[[nodiscard]] PixelBounds pixel_bounds(const LocalCamera& camera, std::span<const Cube> parents, float half_m) noexcept;
+[[nodiscard]] PixelBounds pixel_bounds(const LocalCamera& camera, const Cube& parent, float half_m) noexcept;
 
-}  // namespace depthgrid::search
+}  // namespace depthgrid::views
