@@ -17,9 +17,10 @@ constexpr int kMaxPixels = 4096;
 struct Look {
   bool measured = false;
   bool occluded = false;
-  bool unmeasured = false;
+  Unmeasured unmeasured = Unmeasured::not_told;
 
-  [[nodiscard]] bool anything() const noexcept { return measured || occluded || unmeasured; }
+  void says_nothing(Unmeasured why) noexcept { unmeasured = first_of(unmeasured, why); }
+  [[nodiscard]] bool anything() const noexcept { return measured || occluded || unmeasured != Unmeasured::not_told; }
 };
 
 /// Pixels, inclusive.
@@ -46,13 +47,14 @@ struct Sight {
   /// What the readings in these pixels say, added to what is known. The window may leave the image.
   void read(const PixelWindow& pixels, Look& known) const noexcept {
     const PixelWindow inside = pixels.clipped_to(whole());
-    known.unmeasured = known.unmeasured || inside.u0 > pixels.u0 || inside.v0 > pixels.v0 || inside.u1 < pixels.u1 ||
-                       inside.v1 < pixels.v1;
+    if (inside.u0 > pixels.u0 || inside.v0 > pixels.v0 || inside.u1 < pixels.u1 || inside.v1 < pixels.v1) {
+      known.says_nothing(Unmeasured::image_edge);
+    }
     for (int v = inside.v0; v <= inside.v1; ++v) {
       for (int u = inside.u0; u <= inside.u1; ++u) {
         const auto depth_m = static_cast<double>(view.measured_m(u, v));
         if (!(depth_m > 0)) {
-          known.unmeasured = true;
+          known.says_nothing(Unmeasured::no_reading);
         } else if (std::abs(p.z() - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {
           known.measured = true;
         } else if (p.z() > depth_m) {
@@ -110,12 +112,14 @@ PixelWindow pixel_window(const PinholeCamera& c, const Eigen::Vector3d& p, doubl
 Look look_around(const Sight& sight, double near_m) noexcept {
   Look result;
   if (sight.p.z() - sight.slack_m <= near_m) {
-    result.unmeasured = true;
+    result.says_nothing(Unmeasured::blind_zone);
     return result;
   }
   const PixelWindow window = pixel_window(sight.pinhole, sight.p, sight.slack_m);
   const PixelWindow inside = window.clipped_to(sight.whole());
-  result.unmeasured = inside.u0 > window.u0 || inside.v0 > window.v0 || inside.u1 < window.u1 || inside.v1 < window.v1;
+  if (inside.u0 > window.u0 || inside.v0 > window.v0 || inside.u1 < window.u1 || inside.v1 < window.v1) {
+    result.says_nothing(Unmeasured::image_edge);
+  }
   std::size_t level = 0;
   while (level + 1 < sight.image.levels.size() &&
          std::max(inside.u1 - inside.u0, inside.v1 - inside.v0) >= 16 << level) {
@@ -132,7 +136,7 @@ Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& 
   Classification result;
   double nearest_camera_m = std::numeric_limits<double>::infinity();
   bool occluded = false;
-  bool unmeasured = false;
+  Unmeasured unmeasured = Unmeasured::not_told;
   bool looks = false;
   for (std::size_t k = 0; k < snapshot.camera_count(); ++k) {
     const views::View& view = snapshot.view(k);
@@ -146,8 +150,9 @@ Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& 
     if (!(p.x_px >= 0 && p.y_px >= 0 && p.x_px < camera.intrinsics.width_px && p.y_px < camera.intrinsics.height_px)) {
       continue;
     }
-    if (p.depth_m <= camera.rule.near_m) {
-      unmeasured = true;
+    // What a late image shows is not known to be there any more.
+    if (p.depth_m <= camera.rule.near_m || snapshot.late(k)) {
+      unmeasured = first_of(unmeasured, snapshot.late(k) ? Unmeasured::late_image : Unmeasured::blind_zone);
       continue;
     }
     const PoseMargin& e = snapshot.pose_margin(k);
@@ -169,14 +174,15 @@ Classification classify(const views::Snapshot& snapshot, const Eigen::Vector3d& 
       result.camera = static_cast<std::uint16_t>(k);
     }
     occluded = occluded || seen.occluded;
-    unmeasured = unmeasured || seen.unmeasured;
+    unmeasured = first_of(unmeasured, seen.unmeasured);
   }
   if (result.camera) {
     result.state = ProximityState::measured;
-  } else if (occluded || (looks && !unmeasured)) {
+  } else if (occluded || (looks && unmeasured == Unmeasured::not_told)) {
     result.state = ProximityState::occluded;  // where a camera looks and says nothing, none has seen it free either
-  } else if (unmeasured) {
+  } else if (unmeasured != Unmeasured::not_told) {
     result.state = ProximityState::unmeasured;
+    result.unmeasured = unmeasured;
   }
   return result;
 }

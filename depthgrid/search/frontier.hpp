@@ -10,12 +10,13 @@
 
 namespace depthgrid::search {
 
-/// A cube of the octree, relative to the query's origin, metres.
-struct Cube {
-  float x, y, z;     ///< centre
-  float distance_m;  ///< no point of the cube is nearer to the axes of its primitives
-  std::int32_t level;
-  std::uint32_t primitives;  ///< bit i: it may hold the nearest obstacle of primitive i
+struct VerdictNode;
+
+/// Child `lane` of a node.
+struct OpenCube {
+  VerdictNode* node;
+  float distance_m;  ///< from the axis: no point of the cube is nearer
+  std::uint32_t lane;
 };
 
 /// Cubes come out by bucket, nearest bucket first; within a bucket last in, first out.
@@ -36,7 +37,7 @@ class Frontier {
   }
 
   /// False when there is no room.
-  [[nodiscard]] bool push(const Cube& cube) noexcept {
+  [[nodiscard]] bool push(const OpenCube& cube) noexcept {
     std::int32_t slot = free_;
     if (slot >= 0) {
       free_ = next_[static_cast<std::size_t>(slot)];
@@ -55,7 +56,7 @@ class Frontier {
   }
 
   /// Takes a cube of the nearest bucket; false when there is none.
-  [[nodiscard]] bool pop(Cube& cube) noexcept {
+  [[nodiscard]] bool pop(OpenCube& cube) noexcept {
     for (std::size_t word = static_cast<std::size_t>(current_) / 64; word < occupied_.size(); ++word) {
       if (occupied_[word] == 0) {
         continue;
@@ -75,17 +76,11 @@ class Frontier {
     return false;
   }
 
-  /// Takes another cube of the bucket that pop() took from, if there is one and it has this level.
-  [[nodiscard]] bool pop_like(std::int32_t level, Cube& cube) noexcept {
-    const std::int32_t slot = heads_[static_cast<std::size_t>(current_)];
-    return slot >= 0 && slots_[static_cast<std::size_t>(slot)].level == level && pop(cube);
-  }
-
   /// Nothing open is nearer than this.
   [[nodiscard]] float lower_bound_m() const noexcept { return static_cast<float>(current_) / scale_ * 0.9999F; }
 
  private:
-  std::vector<Cube> slots_;
+  std::vector<OpenCube> slots_;
   std::vector<std::int32_t> next_;
   std::array<std::int32_t, kBuckets> heads_{};
   std::array<std::uint64_t, kBuckets / 64> occupied_{};

@@ -4,7 +4,7 @@ namespace depthgrid::search {
 namespace {
 
 /// The clock is read once in so many cubes.
-constexpr int kClockInterval = 64;
+constexpr int kClockInterval = 16;
 
 }  // namespace
 

@@ -12,6 +12,10 @@ class RemainingBudget {
   /// Cubes that may still be opened, of those given last.
   [[nodiscard]] std::int64_t nodes() const noexcept { return nodes_; }
   void give(std::int64_t nodes) noexcept { nodes_ = nodes; }
+  /// Whether they are limited at all.
+  [[nodiscard]] bool is_counted() const noexcept { return nodes_ <= kMost; }
+  /// Nothing that is counted has more.
+  static constexpr std::int64_t kMost = std::int64_t{1} << 48;
   void take(std::int64_t nodes) noexcept { nodes_ -= nodes; }
   void end_at(std::chrono::steady_clock::time_point deadline) noexcept;
   /// Looks at the clock at its first call and once in so many.

@@ -1,6 +1,6 @@
 // A ball meets what one camera has not seen free exactly if it meets the not known free part of one of its pixels,
 // whatever vectors, blocks and windows the pixels are looked for with.
-#include "depthgrid/search/ball_scan.hpp"
+#include "depthgrid/views/ball_scan.hpp"
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "depthgrid/core/pixel_frustum.hpp"
-#include "depthgrid/search/ball_query.hpp"
+#include "depthgrid/views/ball_query.hpp"
 #include "depthgrid/views/prepared_image.hpp"
 #include "depthgrid/views/view_store.hpp"
 #include "reference/random_problem.hpp"
@@ -24,6 +24,8 @@ namespace {
 
 using Eigen::Vector3d;
 using reference::Random;
+using views::Clip;
+using views::LocalCamera;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// What meets_not_known_free() is exact to.
@@ -73,7 +75,7 @@ class Scene {
     views::Settings settings;
     settings.space = views::BoxSpace{{-5, -5, -5}, {5, 5, 5}};
     settings.policies = {views::Policy::obstacle, views::Policy::obstacle, views::Policy::obstacle, 0};
-    settings.margins = {CameraMargins{SensorMargin{0, 0, 0, 0}}};
+    settings.margins = {CameraMargins{.sensor = {0, 0, 0, 0}, .smallest_obstacle_m = 0}};
     settings.v_max_m_s = 0;
     store_.emplace(rig, settings);
     EXPECT_EQ(

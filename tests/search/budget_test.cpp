@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
+#include "depthgrid/search/best_first.hpp"
 #include "search/search_setup.hpp"
 
 namespace depthgrid::search {
@@ -56,10 +58,10 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
     for (int i = 0; i < 9; ++i) {
       primitives.push_back(Capsule::sphere(random.in_cube(0.6), random.uniform(0, 0.05)));
     }
-    const std::vector<Answer> whole = asker.distances(primitives);
+    std::vector<Answer> whole(primitives.size());
     std::vector<Answer> part(primitives.size());
     Count all;
-    asker.search().distances(asker.snapshot(), primitives, part, {}, &all);
+    asker.search().distances(asker.snapshot(), primitives, whole, {}, &all);
     opened += all.nodes;
     for (const std::int64_t nodes : {std::int64_t{1}, all.nodes / 8, all.nodes / 2}) {
       Count count;
@@ -76,6 +78,39 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
     }
   });
   EXPECT_GT(opened, 0);
+}
+
+// From the nearest cube for which there was no room on nothing is known.
+TEST(Budget, AFullFrontierGivesALowerBound) {
+  int stopped = 0;
+  int raised = 0;
+  for_random_problems(40, {}, [&](const RandomProblem& problem, Random&) {
+    const SearchSetup setup = make_setup(problem, SpaceKind::box, true);
+    const Asker asker(setup);
+    VerdictTree tree(1U << 14U);
+    (void)tree.aim(asker.snapshot(), nullptr);
+    for (const Vector3d& p_world : problem.points_world) {
+      const Question question(tree.query(), Capsule::point(p_world), setup.settings.rho_m);
+      const auto nearest = [&](std::size_t capacity) {
+        Frontier frontier(capacity);
+        RemainingBudget unlimited;
+        unlimited.give(std::numeric_limits<std::int64_t>::max());
+        Count count;
+        return find_nearest(tree, frontier, question, unlimited, count);
+      };
+      const Nearest whole = nearest(1U << 15U);
+      EXPECT_FALSE(whole.stopped);
+      for (const std::size_t capacity : {1, 2, 4, 8, 16, 64, 256}) {
+        const Nearest part = nearest(capacity);
+        EXPECT_LE(part.distance_m, whole.distance_m) << "room for " << capacity;
+        EXPECT_TRUE(part.stopped || part.distance_m == whole.distance_m) << "room for " << capacity;
+        stopped += part.stopped ? 1 : 0;
+        raised += part.stopped && part.distance_m > 0 ? 1 : 0;
+      }
+    }
+  });
+  EXPECT_GT(stopped, 0) << "there was always room";
+  EXPECT_GT(raised, 0) << "no bound was above zero";
 }
 
 TEST(Budget, OfTimeGivesALowerBound) {

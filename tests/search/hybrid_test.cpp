@@ -139,7 +139,7 @@ struct Staged {
       camera.T_world_camera = look_at(places_world[k], Vector3d::Zero(), Vector3d(0.1, 0.2, 1).normalized());
       setup.rig.cameras.push_back(camera);
       views.push_back(scene.render(camera.intrinsics, camera.T_world_camera));
-      setup.settings.margins.push_back(CameraMargins{SensorMargin{0, 0, 0, 0}});
+      setup.settings.margins.push_back(CameraMargins{.sensor = {0, 0, 0, 0}, .smallest_obstacle_m = 0});
     }
     for (const simulation::View& view : views) {
       const DepthImage& image = view.depth_m;

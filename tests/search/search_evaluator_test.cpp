@@ -4,10 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iostream>
 #include <limits>
+#include <random>
 
 #include "depthgrid/core/sensor_models.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/random_run.hpp"
+#include "support/thrown_message.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -26,6 +32,7 @@ Rig rig_of(int cameras) {
     camera.intrinsics = from_opencv(kWidth, kHeight, 52.5, 52.5, 31.5, 23.5);
     camera.T_world_camera.translation().x() = 0.1 * k;
     camera.margins = sensor_margins(sensor_model("ideal"), camera.intrinsics, 0.001);
+    camera.margins->smallest_obstacle_m = 0;
   }
   return rig;
 }
@@ -141,7 +148,7 @@ TEST(SearchEvaluator, SaysWhatBecameOfAFrame) {
   EXPECT_THAT(cell.update(0, wall.frame(), scaled).reason, HasSubstr("rigid transform"));
   const FrameUpdate taken = cell.update(0, wall.frame(), Pose::Identity());
   EXPECT_TRUE(taken.taken());
-  EXPECT_EQ(taken.reason, nullptr);
+  EXPECT_STREQ(taken.reason, "");
   // The second camera is missing: the first such frame's reason.
   const Frame frame = wall.frame();
   EXPECT_THAT(update_all(cell, {&frame, 1}).reason, HasSubstr("no depth image"));
@@ -213,6 +220,189 @@ TEST(SearchEvaluator, AllocatesNothing) {
   cell.evaluate(asked, 0, answers);
   (void)cell.distance(kPoint);
   EXPECT_EQ(guard.allocations(), 0);
+}
+
+TEST(SearchEvaluator, AnImageThatIsTooOldFreesNothing) {
+  for (const double v_max_m_s : {0.0, 0.1}) {
+    const Rig rig = rig_of(2);
+    views::Settings settings = settings_for(rig);
+    settings.v_max_m_s = v_max_m_s;
+    SearchEvaluator evaluator(rig, settings, {.max_image_age_s = 0.2});
+    EXPECT_TRUE(std::isnan(evaluator.image_time_s(0)));
+    const Wall wall;
+    ASSERT_TRUE(evaluator.update(0, wall.frame(1.0)).taken());
+    ASSERT_TRUE(evaluator.update(1, wall.frame(1.1)).taken());
+    const Answer both = evaluator.distance(kPoint, 1.15);
+    EXPECT_GT(both.nearest.distance_m, 0.2);
+    EXPECT_FALSE(both.nearest.stale);
+    EXPECT_EQ(evaluator.image_time_s(0), 1.0);
+    EXPECT_EQ(evaluator.image_time_s(1), 1.1);
+    EXPECT_TRUE(std::isnan(evaluator.image_time_s(2)));
+    // Camera 0 is late: what camera 1 sees is still free.
+    const Answer one = evaluator.distance(kPoint, 1.25);
+    EXPECT_GT(one.nearest.distance_m, 0.2);
+    EXPECT_TRUE(one.nearest.stale);
+    const Answer none = evaluator.distance(kPoint, 1.35);
+    EXPECT_EQ(none.nearest.distance_m, 0);
+    EXPECT_TRUE(none.nearest.stale);
+    EXPECT_EQ(none.nearest.state, ProximityState::unmeasured) << "nothing that a late image shows is measured";
+    // What was found out about late images is not kept for others.
+    const Answer again = evaluator.distance(kPoint, 1.15);
+    EXPECT_EQ(again.nearest.distance_m, both.nearest.distance_m);
+    EXPECT_FALSE(again.nearest.stale);
+    ASSERT_TRUE(evaluator.update(0, wall.frame(1.34)).taken());
+    EXPECT_GT(evaluator.distance(kPoint, 1.35).nearest.distance_m, 0.2) << "it is back";
+  }
+}
+
+TEST(SearchEvaluator, AnImageWithoutATimeIsOfAnyAge) {
+  const Rig rig = rig_of(2);
+  views::Settings settings = settings_for(rig);
+  settings.v_max_m_s = 0;
+  SearchEvaluator evaluator(rig, settings);
+  const Wall wall;
+  const double no_time_s = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_TRUE(evaluator.update(0, wall.frame(no_time_s)).taken());
+  // The other one covers its lens, and has a time.
+  Wall covered;
+  std::fill(covered.depth_m.begin(), covered.depth_m.end(), 0.0F);
+  ASSERT_TRUE(evaluator.update(1, covered.frame(1.0)).taken());
+  EXPECT_EQ(evaluator.distance(kPoint, 1.1).nearest.distance_m, 0);
+  EXPECT_GT(evaluator.distance(kPoint, no_time_s).nearest.distance_m, 0.2)
+      << "without a clock it is asked about itself";
+}
+
+TEST(SearchEvaluator, AMemoryDoesNotOutliveItsCameras) {
+  for (const double v_max_m_s : {0.0, 0.1}) {
+    const Rig rig = rig_of(2);
+    views::Settings settings = settings_for(rig);
+    settings.v_max_m_s = v_max_m_s;
+    memory::MemorySettings remembered;
+    remembered.low_world = Vector3d(-0.6, -0.6, 1.2);
+    remembered.high_world = Vector3d(0.6, 0.6, 2.6);
+    remembered.start = memory::StartEmpty{};
+    SearchEvaluator evaluator(rig, settings, {.max_image_age_s = 0.2, .memory = remembered});
+    const Wall wall;
+    ASSERT_TRUE(evaluator.update(0, wall.frame(1.0)).taken());
+    ASSERT_TRUE(evaluator.update(1, wall.frame(1.1)).taken());
+    EXPECT_GT(evaluator.distance(kPoint, 1.15).nearest.distance_m, 0.2);
+    EXPECT_GT(evaluator.distance(kPoint, 1.25).nearest.distance_m, 0.2) << "one camera is left";
+    EXPECT_EQ(evaluator.distance(kPoint, 1.35).nearest.distance_m, 0);
+    // What is let go was part of the robot to both images.
+    ASSERT_TRUE(evaluator.memory()->occupy({&kPoint, 1}, 0.02, 1.12));
+    EXPECT_EQ(evaluator.distance(kPoint, 1.15).nearest.distance_m, 0);
+    EXPECT_TRUE(evaluator.distance(kPoint, 1.15).nearest.stale);
+  }
+}
+
+/// Where the claim of an answer can be looked up: one camera, its images, and a place that it looks at.
+struct Looked {
+  const Rig& rig;
+  const Wall& wall;
+  Vector3d x;
+  double slack_m;  ///< of the answer's nearest point
+
+  /// Readings within so many pixels of the place and of the ball of slack around it.
+  [[nodiscard]] bool misses_a_reading(int beside_px) const {
+    bool missing = false;
+    for_pixels(beside_px, [&](int u, int v) {
+      const bool inside = u >= 0 && v >= 0 && u < kWidth && v < kHeight;
+      missing = missing || (inside && !(wall.depth_m[static_cast<std::size_t>(v * kWidth + u)] >= 0.4F));
+    });
+    return missing;
+  }
+  [[nodiscard]] bool leaves_the_image(int beside_px) const {
+    bool leaves = false;
+    for_pixels(beside_px, [&](int u, int v) { leaves = leaves || u < 0 || v < 0 || u >= kWidth || v >= kHeight; });
+    return leaves;
+  }
+
+ private:
+  template <class Use>
+  void for_pixels(int beside_px, Use&& use) const {
+    const PinholeCamera& c = rig.cameras[0].intrinsics;
+    const DepthPoint at = project(c, x);
+    const int reach_px = beside_px + static_cast<int>(std::ceil(c.fx_px * slack_m / (x.z() - slack_m) * 1.5));
+    for (int v = static_cast<int>(at.y_px) - reach_px; v <= static_cast<int>(at.y_px) + reach_px; ++v) {
+      for (int u = static_cast<int>(at.x_px) - reach_px; u <= static_cast<int>(at.x_px) + reach_px; ++u) {
+        use(u, v);
+      }
+    }
+  }
+};
+
+TEST(SearchEvaluator, SaysWhyACameraSaysNothing) {
+  const test::RandomRun run = test::random_run(60);
+  std::array<int, 5> told{};
+  for (std::int64_t n = 0; n < run.count && !HasFailure(); ++n) {
+    const test::RandomRun again{run.seed + static_cast<std::uint64_t>(n), 1};
+    SCOPED_TRACE(again.reproduce());
+    std::mt19937_64 random(again.seed);
+    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    Rig rig = rig_of(1);
+    rig.cameras[0].rule.near_m = 0.4;
+    views::Settings settings = settings_for(rig);
+    settings.space = views::BoxSpace{{-1.5, -1.5, 0.3}, {1.5, 1.5, 3}};
+    settings.policies.outside = views::Policy::ignored;
+    settings.policies.unobserved = views::Policy::ignored;
+    settings.margins[0].translation_m = n % 2 == 0 ? 0 : 0.02;
+    settings.margins[0].sensor.lateral_px = static_cast<int>(n % 3);
+    Wall wall;
+    for (int hole = 0; hole < 6; ++hole) {
+      const auto u = static_cast<int>(uniform(0, kWidth - 3));
+      const auto v = static_cast<int>(uniform(0, kHeight - 3));
+      for (int i = 0; i < 9; ++i) {
+        wall.depth_m[static_cast<std::size_t>((v + i / 3) * kWidth + u + i % 3)] = hole < 3 ? 0.0F : 1.5F;
+      }
+    }
+    SearchEvaluator evaluator(rig, settings, {.max_image_age_s = 0.5});
+    ASSERT_TRUE(evaluator.update(0, wall.frame(1)).taken());
+    const bool late = n % 10 == 9;
+    for (int q = 0; q < 40; ++q) {
+      const double z = uniform(0.35, 2.5);
+      const Capsule at = Capsule::point({uniform(-0.7, 0.7) * z, uniform(-0.6, 0.6) * z, z});
+      const Proximity nearest = evaluator.distance(at, late ? 2.0 : 1.0).nearest;
+      if (nearest.state != ProximityState::unmeasured) {
+        EXPECT_EQ(nearest.unmeasured, Unmeasured::not_told);
+        continue;
+      }
+      ++told[static_cast<std::size_t>(nearest.unmeasured)];
+      const double slack_m =
+          settings.resolution_m + settings.margins[0].translation_m + 2 * settings.margins[0].half_exposure_s + 1e-4;
+      const Looked looked{rig, wall, nearest.nearest_world, slack_m};
+      const int w = settings.margins[0].sensor.lateral_px;
+      switch (nearest.unmeasured) {
+        case Unmeasured::no_reading:
+          EXPECT_TRUE(!late && looked.misses_a_reading(w));
+          break;
+        case Unmeasured::image_edge:
+          EXPECT_TRUE(!late && looked.leaves_the_image(w));
+          break;
+        case Unmeasured::blind_zone:
+          EXPECT_TRUE(!late && nearest.nearest_world.z() - slack_m <= 0.4);
+          break;
+        case Unmeasured::late_image:
+          EXPECT_TRUE(late);
+          break;
+        case Unmeasured::not_told:
+          ADD_FAILURE() << "no reason";
+      }
+    }
+  }
+  std::cout << told[1] << " without a reading, " << told[2] << " at the edge, " << told[3] << " in the blind zone, "
+            << told[4] << " with a late image\n";
+  EXPECT_TRUE(run.count < 60 || (told[1] > 20 && told[2] > 20 && told[3] > 20 && told[4] > 20));
+}
+
+TEST(SearchEvaluator, TheAgeOfImagesIsAlwaysLimited) {
+  const Rig rig = rig_of(1);
+  const auto refused = [&](double age_s) {
+    return test::thrown_message([&] { SearchEvaluator(rig, settings_for(rig), {.max_image_age_s = age_s}); });
+  };
+  EXPECT_EQ(refused(0.1), "");
+  EXPECT_THAT(refused(0), HasSubstr("age of 0 s"));
+  EXPECT_THAT(refused(std::numeric_limits<double>::infinity()), HasSubstr("age of inf s"));
+  EXPECT_THAT(refused(std::numeric_limits<double>::quiet_NaN()), HasSubstr("age of nan s"));
 }
 
 }  // namespace

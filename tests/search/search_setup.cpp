@@ -23,6 +23,7 @@ CameraMargins random_margins(reference::Random& random, const reference::RandomP
     margins.half_exposure_s = random.uniform(0, problem.pose.time_m) / v_max_m_s;
     margins.time_uncertainty_s = random.uniform(0, problem.pose.time_m) / v_max_m_s;
   }
+  margins.smallest_obstacle_m = 0;
   return margins;
 }
 
@@ -64,7 +65,8 @@ reference::Problem oracle_problem(const SearchSetup& setup, double grown_m, doub
     const CameraMargins& margins = setup.settings.margins[k];
     const Frame& frame = setup.frames[k];
     const double time_s = std::abs(frame.time_s - t_ref_s) + margins.half_exposure_s + margins.time_uncertainty_s;
-    const PoseMargin pose{margins.translation_m + grown_m, margins.rotation_rad, setup.settings.v_max_m_s * time_s};
+    const PoseMargin pose{margins.translation_m + grown_m, margins.rotation_rad,
+                          setup.settings.v_max_m_s * time_s * (1 + margins.rotation_rad)};
     problem.cameras.push_back({camera.intrinsics, camera.T_world_camera, camera.rule, frame, margins.sensor, pose});
   }
   if (const auto* frustum = std::get_if<views::FrustumSpace>(&setup.settings.space)) {

@@ -57,6 +57,7 @@ SearchSetup two_cameras() {
   const double pixel_m = kFarthestBallM / kFocalPx;
   CameraMargins margins;
   margins.sensor = {0.5 * pixel_m * pixel_m / kBallRadiusM, 0, 0, 1};
+  margins.smallest_obstacle_m = 0;
   setup.settings.margins = {margins, margins};
   setup.settings.rho_m = 0.3;
   setup.settings.v_max_m_s = 0;
