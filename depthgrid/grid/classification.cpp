@@ -11,7 +11,9 @@ namespace {
 struct Look {
   bool measured = false;
   bool occluded = false;
-  bool unmeasured = false;
+  Unmeasured unmeasured = Unmeasured::not_told;
+
+  void says_nothing(Unmeasured why) noexcept { unmeasured = first_of(unmeasured, why); }
 };
 
 Look look(const ViewingCamera& view, int u, int v, double z_m, const SensorMargin& margin, double slack_m) noexcept {
@@ -19,13 +21,15 @@ Look look(const ViewingCamera& view, int u, int v, double z_m, const SensorMargi
   const DepthImage& measured_m = *view.measured_m;
   const int radius_px = margin.lateral_px;
   // Beyond the image's edge nothing is measured, so the free depth of the pixels beside it is 0.
-  result.unmeasured = u < radius_px || v < radius_px || u + radius_px >= measured_m.width_px() ||
-                      v + radius_px >= measured_m.height_px();
+  if (u < radius_px || v < radius_px || u + radius_px >= measured_m.width_px() ||
+      v + radius_px >= measured_m.height_px()) {
+    result.says_nothing(Unmeasured::image_edge);
+  }
   for (int j = std::max(0, v - radius_px); j <= std::min(measured_m.height_px() - 1, v + radius_px); ++j) {
     for (int i = std::max(0, u - radius_px); i <= std::min(measured_m.width_px() - 1, u + radius_px); ++i) {
       const double depth_m = measured_m.at(i, j);
       if (!(depth_m > 0)) {
-        result.unmeasured = true;
+        result.says_nothing(Unmeasured::no_reading);
       } else if (view.is_robot != nullptr && view.is_robot[measured_m.index(i, j)] != 0) {
         result.occluded = result.occluded || z_m > depth_m;
       } else if (std::abs(z_m - depth_m) <= depth_margin_m(margin, depth_m) + slack_m) {
@@ -45,7 +49,7 @@ Classification classify(std::span<const Eigen::Vector3d> samples_world, std::spa
   Classification result;
   double nearest_camera_m = std::numeric_limits<double>::infinity();
   bool occluded = false;
-  bool unmeasured = false;
+  Unmeasured unmeasured = Unmeasured::not_told;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     const ViewingCamera& view = cameras[k];
     for (const Eigen::Vector3d& sample_world : samples_world) {
@@ -58,7 +62,7 @@ Classification classify(std::span<const Eigen::Vector3d> samples_world, std::spa
         continue;
       }
       if (p.depth_m < view.near_m) {
-        unmeasured = true;
+        unmeasured = first_of(unmeasured, Unmeasured::blind_zone);
         continue;
       }
       const Look seen = look(view, static_cast<int>(p.x_px), static_cast<int>(p.y_px), p.depth_m, margin, slack_m);
@@ -67,15 +71,16 @@ Classification classify(std::span<const Eigen::Vector3d> samples_world, std::spa
         result.camera = static_cast<std::uint16_t>(k);
       }
       occluded = occluded || seen.occluded;
-      unmeasured = unmeasured || seen.unmeasured;
+      unmeasured = first_of(unmeasured, seen.unmeasured);
     }
   }
   if (result.camera) {
     result.state = ProximityState::measured;
   } else if (occluded) {
     result.state = ProximityState::occluded;
-  } else if (unmeasured) {
+  } else if (unmeasured != Unmeasured::not_told) {
     result.state = ProximityState::unmeasured;
+    result.unmeasured = unmeasured;
   }
   return result;
 }

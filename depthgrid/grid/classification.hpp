@@ -25,6 +25,7 @@ struct ViewingCamera {
 struct Classification {
   ProximityState state = ProximityState::unobserved;
   std::optional<std::uint16_t> camera;
+  Unmeasured unmeasured = Unmeasured::not_told;
 };
 
 /// A camera looks at a sample through its pixel and the pixels within margin.lateral_px of it, because that is what its

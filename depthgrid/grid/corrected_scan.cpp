@@ -90,6 +90,14 @@ bool CorrectedScan::nearest_obstacle(Column& column, double d1_m, double d2_m, N
 }
 
 bool CorrectedScan::known_free(Column& column, double d1_m, double d2_m) noexcept {
+  if (possible_ != nullptr) {
+    PixelFrustum cell = column.pixel;
+    cell.d1_m = d1_m;
+    cell.d2_m = d2_m;
+    if (!possible_->may_hold(cell)) {
+      return true;
+    }
+  }
   if (!column.has_edges) {
     for (std::size_t k = 0; k < cameras_.size(); ++k) {
       column.edges[k] = cameras_[k].carver->edges(column.pixel);

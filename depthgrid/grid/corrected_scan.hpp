@@ -11,6 +11,7 @@
 #include "depthgrid/grid/evaluation.hpp"
 #include "depthgrid/grid/observation.hpp"
 #include "depthgrid/grid/obstacle_set.hpp"
+#include "depthgrid/grid/possible_cells.hpp"
 
 namespace depthgrid::grid {
 
@@ -24,14 +25,17 @@ class CorrectedScan {
  public:
   /// `cameras` are the cameras that may free cells: all secondary ones, and the principal one too where it has a pose
   /// margin (without one, its own free depth ends exactly at g on each of its rays). principal_near_m: its blind zone.
+  /// `possible`: what may hold anything by a memory; null without one.
   CorrectedScan(const DepthGrid& grid, const DepthImage& principal_free_m, double principal_near_m,
-                bool principal_has_margin, std::span<const CarvingCamera> cameras, const EvaluationSettings& settings,
-                const ControlPoint& point, ObstacleSet& obstacles, EvaluationCount& count) noexcept
+                bool principal_has_margin, std::span<const CarvingCamera> cameras, const PossibleCells* possible,
+                const EvaluationSettings& settings, const ControlPoint& point, ObstacleSet& obstacles,
+                EvaluationCount& count) noexcept
       : grid_(grid),
         principal_free_m_(principal_free_m),
         principal_near_m_(principal_near_m),
         principal_has_margin_(principal_has_margin),
         cameras_(cameras),
+        possible_(possible),
         settings_(settings),
         point_(point),
         obstacles_(obstacles),
@@ -60,6 +64,7 @@ class CorrectedScan {
   double principal_near_m_;
   bool principal_has_margin_;
   std::span<const CarvingCamera> cameras_;
+  const PossibleCells* possible_;
   const EvaluationSettings& settings_;
   const ControlPoint& point_;
   ObstacleSet& obstacles_;

@@ -20,6 +20,15 @@ void validate(const EvaluationSettings& settings) {
   if (!(settings.max_frame_age_s >= 0)) {
     fail("evaluation settings: max_frame_age is ", settings.max_frame_age_s, " s, must not be negative");
   }
+  if (!(settings.max_image_age_s > 0 && settings.max_image_age_s <= 3600)) {
+    fail("evaluation settings: max_image_age is ", settings.max_image_age_s, " s, must be above 0 and at most 3600");
+  }
+  if (settings.memory && settings.variant == Variant::letter) {
+    fail(
+        "evaluation settings: a memory with the variant letter, whose distances may be too large: what nothing can be "
+        "in "
+        "does not mend them; take the variant corrected, or the search");
+  }
   depthgrid::validate(settings.sensor);
   depthgrid::validate(settings.pose);
 }

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
 
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/repulsion_law.hpp"
+#include "depthgrid/memory/settings.hpp"
 
 namespace depthgrid::grid {
 
@@ -37,6 +41,14 @@ enum class RobotPixels : std::uint8_t {
   removed,  ///< taken out of the image, as the letter does with a single camera: nothing behind the robot is seen
 };
 
+/// A memory of what may be where (docs/memory.md): a cell counts as obstacle only if, beyond that no camera frees it
+/// now, something may be in it by what was seen before. It looks at each image as the search does, camera by camera.
+struct GridMemory {
+  memory::MemorySettings settings;     ///< its region is a box along the world's axes, not the principal camera's
+  std::vector<CameraMargins> margins;  ///< one a camera, in the rig's order
+  double v_max_m_s = std::numeric_limits<double>::quiet_NaN();  ///< fastest obstacle; has to be set
+};
+
 struct EvaluationSettings {
   Variant variant = Variant::corrected;
   Window window = Window::region_of_surveillance;
@@ -52,6 +64,11 @@ struct EvaluationSettings {
   double max_frame_age_s =
       1e9;  ///< a frame older than the newest by more than this, or without a
             ///< finite time, makes answers stale; all cameras frozen together is for the caller to see
+  /// By the clock: when an image is older than this at the time that evaluate() is asked for, distance_now_m is NaN.
+  /// Greater than 0, at most an hour.
+  double max_image_age_s = 0.5;
+  /// `corrected` only. Nothing: no memory.
+  std::optional<GridMemory> memory{};
 };
 
 /// Throws Error with value and rule.

@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "depthgrid/core/blind_layer.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/usable_frame.hpp"
 #include "depthgrid/grid/classification.hpp"
 #include "depthgrid/grid/corrected_scan.hpp"
 #include "depthgrid/grid/letter_scan.hpp"
 #include "depthgrid/grid/pixel_order.hpp"
+#include "depthgrid/grid/possible_cells.hpp"
+#include "depthgrid/grid/remembered_images.hpp"
 #include "depthgrid/grid/removed_robot.hpp"
 
 namespace depthgrid::grid {
@@ -33,13 +37,17 @@ Rig checked(const Rig& rig, std::size_t principal) {
 struct GridEvaluator::State {
   /// `rig` is checked already.
   State(const Rig& rig, std::size_t principal_index, const DepthQuantisation& quantisation,
-        const EvaluationSettings& settings_in, std::shared_ptr<const DepthGridMap> map_in)
-      : settings(settings_in),
+        EvaluationSettings settings_in, std::shared_ptr<const DepthGridMap> map_in)
+      : settings(std::move(settings_in)),
         principal(principal_index),
         grid(rig.cameras[principal_index].intrinsics, quantisation),
-        T_principal_world(rig.cameras[principal_index].T_world_camera.inverse()),
+        principal_pose(rig.cameras[principal_index].T_world_camera),
+        T_principal_world(principal_pose.inverse()),
         map(std::move(map_in)) {
     grid::validate(settings);
+    if (settings.memory) {
+      remembered = std::make_unique<RememberedImages>(rig, *settings.memory, settings.rho_m);
+    }
     const bool corrected = settings.variant == Variant::corrected;
     const Pose& T_world_principal = rig.cameras[principal].T_world_camera;
     for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
@@ -89,7 +97,7 @@ struct GridEvaluator::State {
   [[nodiscard]] ControlPoint into_depth_space(const Eigen::Vector3d& p_world) const noexcept;
   [[nodiscard]] double signed_border_distance_m(const ControlPoint& point, Eigen::Vector3d& border) const noexcept;
   [[nodiscard]] PixelWindow surveillance_window(const ControlPoint& point) const noexcept;
-  void scan(const ControlPoint& point, const PixelWindow& window, ObstacleSet& obstacles,
+  void scan(const ControlPoint& point, const PixelWindow& window, const PossibleCells* possible, ObstacleSet& obstacles,
             EvaluationCount& count) const noexcept;
   [[nodiscard]] Answer answer(const ObstacleSet& obstacles) const noexcept;
   void limit_to_grid(const ControlPoint& point, double border_m, const Eigen::Vector3d& border_camera,
@@ -98,6 +106,7 @@ struct GridEvaluator::State {
   EvaluationSettings settings;
   std::size_t principal;
   DepthGrid grid;
+  Pose principal_pose;  ///< T_world_principal, as the rig says
   Pose T_principal_world;
   std::vector<RigCamera> cameras;  ///< as the rig was given
   std::shared_ptr<const DepthGridMap> map;
@@ -109,13 +118,18 @@ struct GridEvaluator::State {
   std::vector<CellCarver> carvers;
   std::vector<CarvingCamera> carving;
   std::vector<ViewingCamera> views;
+  std::vector<double> layers_m;  ///< around the robot, in which each camera sees nothing
+  double blind_m = 0;
   bool stale = false;
+  std::unique_ptr<RememberedImages> remembered;  ///< null without memory
+  double reference_time_s = Proximity::kNaN;     ///< the newest exposure
 };
 
 GridEvaluator::GridEvaluator(const Rig& rig, std::size_t principal, const DepthQuantisation& quantisation,
                              const EvaluationSettings& settings, std::shared_ptr<const DepthGridMap> map)
     : state_(std::make_unique<State>(checked(rig, principal), principal, quantisation, settings, std::move(map))) {
   state_->cameras = rig.cameras;
+  state_->layers_m.assign(rig.cameras.size(), 0.0);
 }
 GridEvaluator::~GridEvaluator() = default;
 GridEvaluator::GridEvaluator(GridEvaluator&&) noexcept = default;
@@ -143,6 +157,15 @@ FrameUpdate GridEvaluator::update(std::size_t camera, const Frame& frame, const 
 FrameUpdate GridEvaluator::State::update(std::size_t camera, const Frame& frame, const char* reason) noexcept {
   const bool usable = reason == nullptr;
   const bool removes = usable && !without_robot.empty();
+  const bool with_margins = settings.variant == Variant::corrected;
+  layers_m[camera] = usable ? blind_layer_m(frame.robot, cameras[camera].intrinsics,
+                                            with_margins ? settings.sensor : SensorMargin{0, 0, 0, 0},
+                                            with_margins ? settings.pose : PoseMargin{})
+                            : 0.0;
+  blind_m = 0;
+  for (const double layer_m : layers_m) {
+    blind_m = thicker(blind_m, layer_m);
+  }
   (void)observations[camera].update(removes ? without_robot[camera].of(frame) : usable ? frame : Frame{});
   double newest_s = -std::numeric_limits<double>::infinity();
   for (const Observation& o : observations) {
@@ -150,10 +173,14 @@ FrameUpdate GridEvaluator::State::update(std::size_t camera, const Frame& frame,
       newest_s = std::max(newest_s, o.time_s());
     }
   }
+  reference_time_s = newest_s;
+  if (remembered != nullptr) {
+    remembered->update(camera, usable ? frame : Frame{});
+  }
   stale = std::any_of(observations.begin(), observations.end(), [&](const Observation& o) {
     return o.present() && !(std::abs(newest_s - o.time_s()) <= settings.max_frame_age_s);
   });
-  return {usable ? UpdateResult::taken : UpdateResult::unusable, reason};
+  return usable ? FrameUpdate{} : FrameUpdate{UpdateResult::unusable, reason};
 }
 
 const char* why_refused(const Capsule& capsule) noexcept {
@@ -181,12 +208,18 @@ Answer GridEvaluator::distance(const Capsule& capsule, EvaluationCount* count) c
   if (border_m > 0) {
     EvaluationCount local;
     ObstacleSet obstacles(s.settings.rho_m, s.settings.repulsion_alpha);
-    const PixelWindow window = s.surveillance_window(point);              // (8), (9)
-    s.scan(point, window, obstacles, count != nullptr ? *count : local);  // (i)-(iv) with (5)-(7)
-    result = s.answer(obstacles);                                         // (10), (11)
+    const PixelWindow window = s.surveillance_window(point);  // (8), (9)
+    std::optional<PossibleCells> possible;
+    if (s.remembered != nullptr) {
+      possible.emplace(s.remembered->store.snapshot(), s.reference_time_s, s.principal_pose);
+    }
+    s.scan(point, window, possible ? &*possible : nullptr, obstacles,
+           count != nullptr ? *count : local);  // (i)-(iv) with (5)-(7)
+    result = s.answer(obstacles);               // (10), (11)
   }
   s.limit_to_grid(point, border_m, border_camera, result);
   result.nearest.stale = s.stale;
+  result.blind_m = s.blind_m;
   result.distance_now_m = lower_bound_after(result.nearest, 0, 0);
   if (result.nearest.nearest_world.allFinite()) {
     result.on_axis_world = p_world;
@@ -194,10 +227,35 @@ Answer GridEvaluator::distance(const Capsule& capsule, EvaluationCount* count) c
   return result;
 }
 
-void GridEvaluator::evaluate(std::span<const Capsule> capsules, double /*now_s*/, std::span<Answer> answers) noexcept {
+ImpossibleSurfaces GridEvaluator::impossible() const noexcept {
+  return state_->remembered != nullptr ? state_->remembered->store.snapshot().impossible() : ImpossibleSurfaces{};
+}
+
+Past GridEvaluator::past(const Proximity& nearest) const noexcept {
+  const State& s = *state_;
+  return s.remembered != nullptr ? s.remembered->past(nearest, s.grid, s.principal_pose) : Past{};
+}
+
+memory::MemoryStore* GridEvaluator::memory() noexcept {
+  return state_->remembered != nullptr ? &state_->remembered->store : nullptr;
+}
+
+double GridEvaluator::image_time_s(std::size_t camera) const noexcept {
+  return camera < camera_count() && state_->observations[camera].present() ? state_->observations[camera].time_s()
+                                                                           : Proximity::kNaN;
+}
+
+void GridEvaluator::evaluate(std::span<const Capsule> capsules, double now_s, std::span<Answer> answers) noexcept {
+  const bool late = std::any_of(state_->observations.begin(), state_->observations.end(), [&](const Observation& o) {
+    return o.present() && now_s - o.time_s() > state_->settings.max_image_age_s;
+  });
   for (std::size_t i = 0; i < answers.size(); ++i) {
     // What has no capsule must not keep an answer of the call before.
     answers[i] = i < capsules.size() ? distance(capsules[i]) : Answer{};
+    if (late && i < capsules.size()) {
+      answers[i].distance_now_m = Proximity::kNaN;
+      answers[i].nearest.stale = true;
+    }
   }
 }
 
@@ -243,8 +301,8 @@ PixelWindow GridEvaluator::State::surveillance_window(const ControlPoint& point)
                                              : sphere_window(grid.principal(), point.p_camera, settings.rho_m);
 }
 
-void GridEvaluator::State::scan(const ControlPoint& point, const PixelWindow& window, ObstacleSet& obstacles,
-                                EvaluationCount& count) const noexcept {
+void GridEvaluator::State::scan(const ControlPoint& point, const PixelWindow& window, const PossibleCells* possible,
+                                ObstacleSet& obstacles, EvaluationCount& count) const noexcept {
   const auto visit = [&](auto&& pixel) {
     if (settings.collect == Collect::hybrid) {
       visit_all(window, pixel);
@@ -253,8 +311,8 @@ void GridEvaluator::State::scan(const ControlPoint& point, const PixelWindow& wi
     }
   };
   if (settings.variant == Variant::corrected) {
-    CorrectedScan scan(grid, observations[principal].free_m(), principal_near_m, has_pose_margin(), carving, settings,
-                       point, obstacles, count);
+    CorrectedScan scan(grid, observations[principal].free_m(), principal_near_m, has_pose_margin(), carving, possible,
+                       settings, point, obstacles, count);
     visit([&](int u, int v) { scan.pixel(u, v); });
     return;
   }
@@ -289,6 +347,7 @@ Answer GridEvaluator::State::answer(const ObstacleSet& obstacles) const noexcept
   const Classification classified = classify(samples, views, margin, cell_m);
   nearest.state = classified.state;
   nearest.camera = classified.camera;
+  nearest.unmeasured = classified.unmeasured;
 
   if (settings.collect == Collect::hybrid) {
     result.obstacle_points = obstacles.count();
@@ -319,6 +378,7 @@ void GridEvaluator::State::limit_to_grid(const ControlPoint& point, double borde
   nearest.distance_m = distance_m;
   nearest.state = ProximityState::outside;
   nearest.camera.reset();
+  nearest.unmeasured = Unmeasured::not_told;
   const Pose T_world_principal = T_principal_world.inverse();
   nearest.nearest_world = T_world_principal * (inside ? border_camera : point.p_camera);
   nearest.direction_world = Eigen::Vector3d::Zero();

@@ -8,6 +8,7 @@
 #include "depthgrid/grid/depth_grid.hpp"
 #include "depthgrid/grid/depth_grid_map.hpp"
 #include "depthgrid/grid/evaluation.hpp"
+#include "depthgrid/memory/memory_store.hpp"
 
 namespace depthgrid::grid {
 
@@ -21,8 +22,9 @@ namespace depthgrid::grid {
 /// - Errors: the constructor throws Error; update() says what became of a frame, why_refused() why there is no answer.
 /// - Threads: evaluate() and distance() from many at once, but not while update() runs.
 ///
-/// The letter does not ask how old an image is: `now_s` is ignored, and distance_now_m is the distance at the time of
-/// the images, min(D, known_to).
+/// The letter does not ask how old an image is: distance_now_m is the distance at the time of the images,
+/// min(D, known_to). Only when one is older than max_image_age_s at `now_s`, distance_now_m is NaN and the answer
+/// stale.
 class GridEvaluator final : public DistanceEvaluator {
  public:
   /// `principal` indexes rig.cameras; all other cameras are secondary. Images must be free of lens distortion already.
@@ -37,6 +39,13 @@ class GridEvaluator final : public DistanceEvaluator {
 
   [[nodiscard]] std::string_view name() const noexcept override { return "grid"; }
   [[nodiscard]] std::size_t camera_count() const noexcept override;
+  [[nodiscard]] double image_time_s(std::size_t camera) const noexcept override;
+
+  /// Only with a memory (EvaluationSettings::memory).
+  [[nodiscard]] ImpossibleSurfaces impossible() const noexcept override;
+  [[nodiscard]] Past past(const Proximity& nearest) const noexcept override;
+  /// Null without memory. What the robot puts down or lets go has to be said to it: MemoryStore::occupy().
+  [[nodiscard]] memory::MemoryStore* memory() noexcept;
 
   /// A frame that is missing (no data), has another size or depth scale than the rig says, or half a robot view is
   /// `unusable`; a camera without a frame so far has measured nothing. With `T_world_camera` too, unless it is the

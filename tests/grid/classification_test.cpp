@@ -30,6 +30,9 @@ TEST(Classification, SurfaceShadowHoleAndNothing) {
   EXPECT_EQ(one.at({0, 0, -1}).state, ProximityState::unobserved) << "behind the camera";
   one.fill(0.0F);
   EXPECT_EQ(one.at({0.05, 0.05, 1.0}).state, ProximityState::unmeasured);
+  EXPECT_EQ(one.at({0.05, 0.05, 1.0}).unmeasured, Unmeasured::no_reading);
+  EXPECT_EQ(one.at({-0.95, 0.05, 1.0}).unmeasured, Unmeasured::no_reading)
+      << "at the edge, too, but no reading comes first";
 }
 
 TEST(Classification, ANearerSurfaceWithinTheFilterRadiusIsMeasured) {
@@ -47,6 +50,7 @@ TEST(Classification, BesideTheImagesEdgeNothingIsMeasured) {
   OneCamera one;
   one.fill(2.0F);
   EXPECT_EQ(one.at({-0.95, 0.05, 1.0}).state, ProximityState::unmeasured);
+  EXPECT_EQ(one.at({-0.95, 0.05, 1.0}).unmeasured, Unmeasured::image_edge);
   EXPECT_EQ(one.at({0.05, 0.95, 1.0}).state, ProximityState::unmeasured);
   one.margin.lateral_px = 0;
   EXPECT_EQ(one.at({-0.95, 0.05, 1.0}).state, ProximityState::unobserved);
@@ -57,6 +61,8 @@ TEST(Classification, TheBlindZoneIsUnmeasured) {
   one.fill(2.0F);
   one.view.near_m = 0.5;
   EXPECT_EQ(one.at({0.01, 0.01, 0.4}).state, ProximityState::unmeasured);
+  EXPECT_EQ(one.at({0.01, 0.01, 0.4}).unmeasured, Unmeasured::blind_zone);
+  EXPECT_EQ(one.at({0.05, 0.05, 2.0}).unmeasured, Unmeasured::not_told);
 }
 
 }  // namespace

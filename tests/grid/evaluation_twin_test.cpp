@@ -6,6 +6,7 @@
 
 #include "depthgrid/grid/cell_carver.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
+#include "grid/corrected_twin.hpp"
 #include "grid/letter_twin.hpp"
 #include "reference/random_problem.hpp"
 #include "support/random_run.hpp"
@@ -14,10 +15,6 @@ namespace depthgrid::grid {
 namespace {
 
 using reference::RandomProblem;
-
-DepthQuantisation quantisation_of(const RandomProblem& problem, double growth = 0.0) {
-  return {problem.d_min_m, problem.step_m, growth, problem.cell_count};
-}
 
 std::vector<SecondaryCamera> secondaries_of(const RandomProblem& problem) {
   std::vector<SecondaryCamera> secondaries;
@@ -29,19 +26,6 @@ std::vector<SecondaryCamera> secondaries_of(const RandomProblem& problem) {
     }
   }
   return secondaries;
-}
-
-std::vector<Observation> observe(const RandomProblem& problem, const SensorMargin* margin) {
-  std::vector<Observation> observations;
-  for (std::size_t k = 0; k < problem.rig.cameras.size(); ++k) {
-    observations.emplace_back(problem.rig.cameras[k], margin);
-    EXPECT_TRUE(observations.back().update(problem.frames[k]));
-  }
-  return observations;
-}
-
-Eigen::Vector3d in_principal(const RandomProblem& problem, const Eigen::Vector3d& p_world) {
-  return problem.rig.cameras[problem.principal].T_world_camera.inverse() * p_world;
 }
 
 EvaluationSettings settings_of(const RandomProblem& problem, Variant variant, Collect collect) {
@@ -100,47 +84,6 @@ TEST(LetterScan, EqualsTheLetterWordForWord) {
     }
   });
   EXPECT_GT(within_rho, 0);
-}
-
-/// Every cell of every pixel, each with its exact distance.
-double corrected_twin(const RandomProblem& problem, const DepthGrid& grid, const std::vector<Observation>& observations,
-                      const EvaluationSettings& settings, const Eigen::Vector3d& p_camera) {
-  const auto& cameras = problem.rig.cameras;
-  const RigCamera& principal = cameras[problem.principal];
-  const bool margin = settings.pose.translation_m > 0 || settings.pose.rotation_rad > 0 || settings.pose.time_m > 0;
-  std::vector<CellCarver> carvers;
-  for (const RigCamera& camera : cameras) {
-    carvers.emplace_back(camera.intrinsics, camera.T_world_camera.inverse() * principal.T_world_camera,
-                         camera.rule.near_m, settings.pose);
-  }
-  double best_m = settings.rho_m;
-  for (int v = 0; v < grid.principal().height_px; ++v) {
-    for (int u = 0; u < grid.principal().width_px; ++u) {
-      const double g = observations[problem.principal].free_m().at(u, v);
-      for (int n = 0; n < grid.count(); ++n) {
-        PixelFrustum cell = grid.cell(u, v, n);
-        if (!margin && g > principal.rule.near_m) {
-          // The principal camera frees near .. g on its own rays, to the point.
-          if (cell.d1_m >= principal.rule.near_m) {
-            cell.d1_m = std::max(cell.d1_m, g);
-          }
-          if (cell.d2_m <= cell.d1_m) {
-            continue;
-          }
-        }
-        bool known_free = false;
-        for (std::size_t k = 0; k < cameras.size() && !known_free; ++k) {
-          if (k != problem.principal || margin) {
-            known_free = carvers[k].frees(carvers[k].edges(cell), cell.d1_m, cell.d2_m, observations[k].free_m());
-          }
-        }
-        if (!known_free) {
-          best_m = std::min(best_m, nearest_point(cell, p_camera).distance_m);
-        }
-      }
-    }
-  }
-  return best_m;
 }
 
 TEST(CorrectedScan, EqualsTheNearestOfAllCells) {

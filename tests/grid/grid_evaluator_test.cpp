@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace depthgrid::grid {
@@ -130,15 +131,81 @@ TEST(GridEvaluator, AnswersPointsOnlyAndSaysWhy) {
   EXPECT_EQ(answers.back().nearest.state, ProximityState::not_evaluated) << "no capsule";
 }
 
-TEST(GridEvaluator, DoesNotAskHowOldAnImageIs) {
-  GridEvaluator evaluator(rig_of(1), 0, kCells, letter());
-  ASSERT_TRUE(evaluator.update(0, RobotBeforeWall().frame()).taken());
+TEST(GridEvaluator, AnImageCountsAsNewUntilItIsTooOld) {
+  GridEvaluator evaluator(rig_of(2), 0, kCells, letter());
+  EXPECT_TRUE(std::isnan(evaluator.image_time_s(0)));
+  ASSERT_TRUE(evaluator.update(0, RobotBeforeWall().frame(1.0)).taken());
+  ASSERT_TRUE(evaluator.update(1, RobotBeforeWall().frame(1.2)).taken());
+  EXPECT_EQ(evaluator.image_time_s(0), 1.0);
+  EXPECT_EQ(evaluator.image_time_s(1), 1.2);
+  EXPECT_TRUE(std::isnan(evaluator.image_time_s(2)));
   const Capsule point = Capsule::point({0.7, 0.3, 3.2});
-  std::array<Answer, 1> now;
+  std::array<Answer, 1> at_once;
   std::array<Answer, 1> later;
-  evaluator.evaluate({&point, 1}, 0, now);
-  evaluator.evaluate({&point, 1}, 100, later);
-  EXPECT_EQ(now[0].distance_now_m, later[0].distance_now_m);
+  std::array<Answer, 1> too_late;
+  evaluator.evaluate({&point, 1}, 1.2, at_once);
+  evaluator.evaluate({&point, 1}, 1.49, later);
+  EXPECT_GT(at_once[0].distance_now_m, 0);
+  EXPECT_EQ(at_once[0].distance_now_m, later[0].distance_now_m);
+  EXPECT_FALSE(later[0].nearest.stale);
+  evaluator.evaluate({&point, 1}, 1.51, too_late);
+  EXPECT_TRUE(std::isnan(too_late[0].distance_now_m));
+  EXPECT_TRUE(too_late[0].nearest.stale);
+}
+
+// With the world turned about the camera every place and direction turns along.
+TEST(GridEvaluator, PlacesAndDirectionsTurnWithTheCamera) {
+  RobotBeforeWall scene;
+  for (std::size_t i = 0; i < scene.depth_m.size(); ++i) {
+    scene.depth_m[i] = i % kWidth < 20 ? 1.8F : 3.4F;  // an edge to one side, so that not all lies straight ahead
+    scene.near_m[i] = scene.far_m[i] = 0;
+  }
+  Rig turned = rig_of(1);
+  turned.cameras[0].T_world_camera = look_at({1, -2, 3}, {0.3, 0.4, 0.5});
+  const Pose& T = turned.cameras[0].T_world_camera;
+  int directions = 0;
+  for (const Variant variant : {Variant::letter, Variant::corrected}) {
+    EvaluationSettings settings = letter();
+    settings.variant = variant;
+    settings.sensor.lateral_px = 0;
+    GridEvaluator straight(rig_of(1), 0, kCells, settings);
+    GridEvaluator other(turned, 0, kCells, settings);
+    ASSERT_TRUE(straight.update(0, scene.frame()).taken());
+    ASSERT_TRUE(other.update(0, scene.frame()).taken());
+    for (const Vector3d& p : {Vector3d(-0.25, 0.1, 1.7), Vector3d(0.1, -0.2, 3.25), Vector3d(0.3, 0.2, 3.2)}) {
+      const Answer a = straight.distance(Capsule::point(p));
+      const Answer b = other.distance(Capsule::point(T * p));
+      directions += a.hybrid_direction_world.norm() > 0.1 ? 1 : 0;
+      EXPECT_NEAR(b.nearest.distance_m, a.nearest.distance_m, 1e-6);
+      EXPECT_LT((b.nearest.nearest_world - T * a.nearest.nearest_world).norm(), 1e-6);
+      EXPECT_LT((b.nearest.direction_world - T.linear() * a.nearest.direction_world).norm(), 1e-6);
+      EXPECT_LT((b.hybrid_direction_world - T.linear() * a.hybrid_direction_world).norm(), 1e-6);
+    }
+  }
+  EXPECT_GE(directions, 4) << "hardly anything was near";
+}
+
+// What stands in a camera's blind zone it does not see, whether its pose is known exactly or not.
+TEST(GridEvaluator, BlindZonesFreeNothingWithAnErrorOfPoseEither) {
+  Rig rig = rig_of(2);
+  rig.cameras[1].T_world_camera.translation() = Vector3d(0, 0, 1);
+  rig.cameras[1].rule.near_m = 0.5;
+  const std::vector<float> nothing_m(kWidth * kHeight, 0.0F);
+  const std::vector<float> wall_m(kWidth * kHeight, 2.4F);
+  for (const double error_m : {0.0, 0.001, 0.02}) {
+    EvaluationSettings settings;
+    settings.sensor.lateral_px = 0;
+    settings.pose.translation_m = error_m;
+    GridEvaluator evaluator(rig, 0, kCells, settings);
+    ASSERT_TRUE(evaluator.update(0, {depth_view(nothing_m, kWidth, kHeight), {}, 0}).taken());
+    ASSERT_TRUE(evaluator.update(1, {depth_view(wall_m, kWidth, kHeight), {}, 0}).taken());
+    for (const double z_m : {1.1, 1.3, 1.48}) {
+      EXPECT_LT(evaluator.distance(Capsule::point({0, 0, z_m})).nearest.distance_m, 0.02) << error_m << " at " << z_m;
+    }
+    const double beyond_m = evaluator.distance(Capsule::point({0, 0, 1.8})).nearest.distance_m;
+    EXPECT_LE(beyond_m, 0.3) << "the blind zone's end";
+    EXPECT_GT(beyond_m, 0.2) << "this camera alone sees it free";
+  }
 }
 
 // The same frames one by one, in any order, and all at once.

@@ -44,8 +44,9 @@ class Descriptor {
 }  // namespace
 
 std::shared_ptr<const MappedFile> MappedFile::open(const std::string& path) {
+  // Opening a pipe would wait for its writer.
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the system's own interface
-  const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (!descriptor.valid() || ::fstat(descriptor.get(), &status) != 0) {
     fail_with_reason(path, "open");
