@@ -8,6 +8,11 @@ Obstacle ContactMemory::completed(const Obstacle& obstacle, std::size_t point, d
     return obstacle;
   }
   Kept& kept = kept_[point];
+  // Where nothing is known there is nothing to come away from.
+  if (!obstacle.pushes || !obstacle.distance_m) {
+    kept = {};
+    return obstacle;
+  }
   if (obstacle.direction_world) {
     kept = {obstacle, 0};
     return obstacle;

@@ -65,6 +65,15 @@ JointVector Controller::posture_velocity() const noexcept {
   return settings_.posture_gain_per_s * (settings_.posture_rad - limiter_.last().position_rad);
 }
 
+CycleOutput Controller::brake() noexcept {
+  memory_.forget();
+  repulsion_before_.setZero();
+  CycleOutput output;
+  output.box = limiter_.box();
+  output.command = limiter_.step(JointVector::Zero(settings_.limits.joints()));
+  return output;
+}
+
 CycleOutput Controller::cycle(const CycleInput& input) noexcept {
   CycleOutput output;
   const auto complete = [this](const Obstacle& obstacle, std::size_t point) {

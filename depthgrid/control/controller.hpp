@@ -75,6 +75,10 @@ class Controller {
   /// the risk, since nothing says where to evade to.
   [[nodiscard]] CycleOutput cycle(const CycleInput& input) noexcept;
 
+  /// The next command of a stop: every joint brakes with its own acceleration until it stands, whatever the task. The
+  /// next cycle() goes on from there.
+  [[nodiscard]] CycleOutput brake() noexcept;
+
   [[nodiscard]] const JointCommand& last() const noexcept { return limiter_.last(); }
 
  private:

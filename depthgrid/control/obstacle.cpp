@@ -13,12 +13,13 @@ std::optional<Eigen::Vector3d> unit_vector(const Eigen::Vector3d& direction) noe
   return direction / length;
 }
 
-Obstacle obstacle_of(const Answer& answer) noexcept {
+Obstacle obstacle_of(const Answer& answer, BlindLayer layer) noexcept {
   Obstacle obstacle;
-  if (!std::isfinite(answer.distance_now_m)) {
+  const double distance_m = layer == BlindLayer::ignored ? answer.distance_now_m : clear_of_layer_m(answer);
+  if (!std::isfinite(distance_m)) {
     return obstacle;
   }
-  obstacle.distance_m = answer.distance_now_m;
+  obstacle.distance_m = distance_m;
   obstacle.direction_world = unit_vector(answer.nearest.direction_world);
   if (answer.hybrid_direction_world.allFinite()) {
     obstacle.hybrid_direction_world = answer.hybrid_direction_world;
@@ -31,7 +32,8 @@ Obstacle obstacle_of(const Proximity& answer, const Eigen::Vector3d& hybrid_dire
   return obstacle_of({.nearest = answer,
                       .distance_now_m = lower_bound_after(answer, elapsed_s, v_max_m_s),
                       .on_axis_world = {},
-                      .hybrid_direction_world = hybrid_direction_world});
+                      .hybrid_direction_world = hybrid_direction_world},
+                     BlindLayer::ignored);
 }
 
 }  // namespace depthgrid::control

@@ -23,6 +23,7 @@ RigCamera camera(int number, std::string_view sensor, const Pose& T_world_camera
   result.T_world_camera = T_world_camera;
   result.sensor = model.name;
   result.margins = sensor_margins(model, result.intrinsics, result.metres_per_unit);
+  result.margins->smallest_obstacle_m = 0;  // nothing is assumed of what the cell will hold
   return result;
 }
 

@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <cstdint>
 #include <limits>
-#include <sstream>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/whole_file.hpp"
 
 namespace depthgrid::simulation {
 
 namespace {
+
+constexpr std::uint64_t kLargestText = std::uint64_t{256} << 20U;  // an hour at 120 frames a second
 
 /// Radius by a part of the bone's name; the first that fits.
 double radius_m(const std::string& bone) {
@@ -45,16 +47,6 @@ double radius_m(const std::string& bone) {
 
 Eigen::Vector3d z_up(const Eigen::Vector3d& y_up) { return {y_up.x(), -y_up.z(), y_up.y()}; }
 
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) {
-    fail(file.string(), ": cannot be read");
-  }
-  return text.str();
-}
-
 }  // namespace
 
 MocapClip::MocapClip(const MocapSkeleton& skeleton, const std::vector<MocapFrame>& frames, double rate_hz)
@@ -86,8 +78,8 @@ MocapClip::MocapClip(const MocapSkeleton& skeleton, const std::vector<MocapFrame
 }
 
 MocapClip MocapClip::load(const std::filesystem::path& asf, const std::filesystem::path& amc, double rate_hz) {
-  const MocapSkeleton skeleton = parse_asf(text_of(asf), asf.string());
-  return {skeleton, parse_amc(text_of(amc), skeleton, amc.string()), rate_hz};
+  const MocapSkeleton skeleton = parse_asf(read_whole_file(asf, kLargestText), asf.string());
+  return {skeleton, parse_amc(read_whole_file(amc, kLargestText), skeleton, amc.string()), rate_hz};
 }
 
 double MocapClip::duration_s() const noexcept { return static_cast<double>(frames_.size() - 1) / rate_hz_; }

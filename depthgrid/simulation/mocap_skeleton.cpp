@@ -6,6 +6,7 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/simulation/mocap_words.hpp"
 
 namespace depthgrid::simulation {
@@ -14,7 +15,9 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kInch = 0.0254;
-constexpr double kLongestBone = 2.0;  ///< [m]: a longer one means that the units are wrong
+constexpr double kLeastUnit = 1e-4;       ///< of length: inches / metres_per_unit; 254 m a unit
+constexpr double kLongestBone = 2.0;      ///< [m]: a longer one means that the units are wrong
+constexpr double kFarthestRoot = 1000.0;  ///< [m] from the origin of the recording, likewise
 constexpr std::size_t kMaxFrames = 1000000;
 
 /// About fixed x, then y, then z.
@@ -38,12 +41,16 @@ void read_units(MocapWords& words, MocapSkeleton& skeleton) {
     const std::string key = words.take();
     if (key == "length") {
       const double length = words.take_number();
-      if (!(length > 0)) {
-        words.refuse("unit of length is " + std::to_string(length) + ", must be positive");
+      if (!(length >= kLeastUnit)) {
+        words.refuse("unit of length is " + std::to_string(length) + ", must be positive, at least 0.0001");
       }
       skeleton.metres_per_unit = kInch / length;
     } else if (key == "angle") {
-      skeleton.degrees = words.take() == "deg";
+      const std::string angle = words.take();
+      if (angle != "deg" && angle != "rad") {
+        words.refuse("unit of angles is '" + printable_excerpt(angle) + "', must be deg or rad");
+      }
+      skeleton.degrees = angle == "deg";
     } else {
       (void)words.take();
     }
@@ -53,9 +60,10 @@ void read_units(MocapWords& words, MocapSkeleton& skeleton) {
 std::vector<int> read_turns(MocapWords& words, const std::string& bone) {
   std::vector<int> turns;
   while (words.on_same_line()) {
-    std::string dof = words.take();
+    const std::string dof = words.take();
     if (dof != "rx" && dof != "ry" && dof != "rz") {
-      words.refuse("bone '" + bone + "' moves in '" + dof.append("', must be rx, ry or rz"));
+      words.refuse("bone '" + printable_excerpt(bone) + "' moves in '" + printable_excerpt(dof) +
+                   "', must be rx, ry or rz");
     }
     turns.push_back(dof[1] - 'x');
   }
@@ -84,7 +92,7 @@ MocapBone read_bone(MocapWords& words, const MocapSkeleton& skeleton) {
     } else if (key == "axis") {
       bone.axis_rad = words.take_vector() * (skeleton.degrees ? kDegree : 1.0);
       if (!words.take_if("XYZ")) {
-        words.refuse("axis of bone '" + bone.name + "' is not in the order XYZ");
+        words.refuse("axis of bone '" + printable_excerpt(bone.name) + "' is not in the order XYZ");
       }
     } else if (key == "dof") {
       bone.turns = read_turns(words, bone.name);
@@ -93,8 +101,8 @@ MocapBone read_bone(MocapWords& words, const MocapSkeleton& skeleton) {
     }
   }
   if (bone.name.empty() || !(length_m >= 0 && length_m <= kLongestBone) || !(direction.norm() > 0.5)) {
-    words.refuse("bone '" + bone.name + "' has no name, no direction, or is not 0 to " + std::to_string(kLongestBone) +
-                 " m long");
+    words.refuse("bone '" + printable_excerpt(bone.name) + "' has no name, no direction, or is not 0 to " +
+                 std::to_string(kLongestBone) + " m long");
   }
   bone.along_m = direction.normalized() * length_m;
   return bone;
@@ -107,16 +115,34 @@ void read_hierarchy(MocapWords& words, Bones& bones) {
   while (!words.take_if("end")) {
     const std::string parent = words.take();
     if (parent != "root" && bones.parent_of.find(parent) == bones.parent_of.end()) {
-      words.refuse("'" + parent + "' has children before it has a parent");
+      words.refuse("'" + printable_excerpt(parent) + "' has children before it has a parent");
     }
     while (words.on_same_line()) {
       const std::string child = words.take();
       if (bones.by_name.find(child) == bones.by_name.end() || !bones.parent_of.emplace(child, parent).second) {
-        words.refuse("'" + child + "' is no bone, or has two parents");
+        words.refuse("'" + printable_excerpt(child) + "' is no bone, or has two parents");
       }
       bones.order.push_back(child);
     }
   }
+}
+
+/// What stands before the frames: whether their angles are degrees, where it is said. What else a keyword might change
+/// about the angles is not known here.
+std::optional<bool> read_degrees(MocapWords& words) {
+  std::optional<bool> degrees;
+  while (!words.at_end() && words.peek().front() == ':') {
+    const std::string keyword = words.take();
+    const bool is_unit = keyword == ":DEGREES" || keyword == ":RADIANS";
+    if (!is_unit && keyword != ":FULLY-SPECIFIED") {
+      words.refuse("'" + printable_excerpt(keyword) + "' is not known, must be :FULLY-SPECIFIED, :DEGREES or :RADIANS");
+    }
+    if (is_unit && degrees.value_or(keyword == ":DEGREES") != (keyword == ":DEGREES")) {
+      words.refuse("says :DEGREES and :RADIANS, must say one of them");
+    }
+    degrees = is_unit ? keyword == ":DEGREES" : degrees;
+  }
+  return degrees;
 }
 
 }  // namespace
@@ -128,13 +154,16 @@ MocapSkeleton parse_asf(std::string_view text, const std::string& name) {
   while (!words.at_end()) {
     const std::string section = words.take();
     if (section == ":units") {
+      if (!bones.by_name.empty()) {
+        words.refuse("the units stand behind the bones that are measured in them, must stand before");
+      }
       read_units(words, skeleton);
     } else if (section == ":bonedata") {
       while (words.take_if("begin")) {
         MocapBone bone = read_bone(words, skeleton);
         const std::string bone_name = bone.name;
         if (!bones.by_name.emplace(bone_name, std::move(bone)).second) {
-          words.refuse("two bones are called '" + bone_name + "'");
+          words.refuse("two bones are called '" + printable_excerpt(bone_name) + "'");
         }
       }
     } else if (section == ":hierarchy") {
@@ -162,10 +191,7 @@ std::vector<MocapFrame> parse_amc(std::string_view text, const MocapSkeleton& sk
   for (std::size_t i = 0; i < skeleton.bones.size(); ++i) {
     index_of[skeleton.bones[i].name] = i;
   }
-  while (!words.at_end() && words.peek().front() == ':') {
-    (void)words.take();
-  }
-  const double to_rad = skeleton.degrees ? kDegree : 1.0;
+  const double to_rad = read_degrees(words).value_or(skeleton.degrees) ? kDegree : 1.0;
   std::vector<MocapFrame> frames;
   while (!words.at_end()) {
     if (words.take_number() != static_cast<double>(frames.size() + 1) || frames.size() >= kMaxFrames) {
@@ -177,12 +203,16 @@ std::vector<MocapFrame> parse_amc(std::string_view text, const MocapSkeleton& sk
       words.refuse("a frame must begin with the root");
     }
     frame.root_m = words.take_vector() * skeleton.metres_per_unit;
+    if (!(frame.root_m.cwiseAbs().maxCoeff() <= kFarthestRoot)) {
+      words.refuse("the root is more than " + std::to_string(kFarthestRoot) +
+                   " m away; are the units of length right?");
+    }
     frame.root_rad = words.take_vector() * to_rad;
     while (!words.at_end() && std::isdigit(static_cast<unsigned char>(words.peek().front())) == 0) {
       const std::string bone = words.take();
       const auto found = index_of.find(bone);
       if (found == index_of.end()) {
-        words.refuse("'" + bone + "' is no bone of the skeleton");
+        words.refuse("'" + printable_excerpt(bone) + "' is no bone of the skeleton");
       }
       for (const int axis : skeleton.bones[found->second].turns) {
         frame.turn_rad[found->second][axis] = words.take_number() * to_rad;

@@ -22,7 +22,7 @@ struct MocapBone {
 struct MocapSkeleton {
   std::vector<MocapBone> bones;  ///< parents before children
   double metres_per_unit = 1;
-  bool degrees = true;  ///< the angles of the frames
+  bool degrees = true;  ///< the angles of the skeleton, and of frames that do not say their own
 };
 
 /// One instant: where the root is and how every bone is turned.
@@ -39,7 +39,9 @@ struct MocapJoints {
 };
 
 /// Throw Error with the name, the line and the rule on a text that is none. Lengths are in units of an inch / `length`,
-/// as CMU's files have it: metres = units * 0.0254 / length.
+/// as CMU's files have it: metres = units * 0.0254 / length. Angles are in the skeleton's unit (deg or rad, degrees
+/// where it says none) unless the frames begin with :DEGREES or :RADIANS. Names and values are quoted so that they
+/// print.
 [[nodiscard]] MocapSkeleton parse_asf(std::string_view text, const std::string& name);
 [[nodiscard]] std::vector<MocapFrame> parse_amc(std::string_view text, const MocapSkeleton& skeleton,
                                                 const std::string& name);

@@ -8,13 +8,18 @@
 #include <string_view>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/core/text_encoding.hpp"
 
 namespace depthgrid::simulation {
 
 /// Reads word by word; from a '#' on a line is a remark.
 class MocapWords {
  public:
-  MocapWords(std::string_view text, std::string name) : text_(text), name_(std::move(name)) { advance(); }
+  MocapWords(std::string_view text, std::string name)
+      : text_(without_byte_order_mark(text, name + ": ")), name_(std::move(name)) {
+    advance();
+  }
 
   [[nodiscard]] bool at_end() const noexcept { return word_.empty(); }
   [[nodiscard]] std::string_view peek() const noexcept { return word_; }
@@ -42,7 +47,7 @@ class MocapWords {
     double value = 0;
     const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (problem != std::errc() || end != word.data() + word.size() || !(std::abs(value) < 1e9)) {
-      refuse("'" + word + "' is no number below 1e9");
+      refuse("'" + printable_excerpt(word) + "' is no number below 1e9");
     }
     return value;
   }

@@ -181,6 +181,60 @@ TEST(Controller, AnUnknownBodyPointStopsTheArm) {
   EXPECT_LT((unknown.jacobian * cell.controller.last().velocity_rad_s).norm(), 0.02);
 }
 
+TEST(Controller, WhatDoesNotPushDoesNotPushByMemoryEither) {
+  const test::LwrPoint tip = test::lwr_flange(test::lwr_bent());
+  for (const bool pushes : {true, false}) {
+    Controller controller(test::lwr_settings());
+    ASSERT_TRUE(controller.start(test::lwr_bent()));
+    Obstacle near{.distance_m = 0.05, .direction_world = Vector3d::UnitX()};
+    near.hybrid_direction_world = Vector3d::UnitX();
+    const auto repulsion_m_s = [&](const Obstacle& obstacle) {
+      return controller
+          .cycle({.task = {tip.jacobian, Vector3d::Zero()}, .end_effector = obstacle, .body = {}, .further_tasks = {}})
+          .repulsion_m_s.norm();
+    };
+    EXPECT_GT(repulsion_m_s(near), 0.1);
+    Obstacle contact{.distance_m = 0.0, .direction_world = {}};
+    contact.pushes = pushes;
+    EXPECT_EQ(repulsion_m_s(contact) > 0, pushes);
+    contact.pushes = true;
+    EXPECT_EQ(repulsion_m_s(contact) > 0, pushes) << "nor afterwards";
+  }
+}
+
+TEST(Controller, AnUnknownDistanceDoesNotPushByMemory) {
+  const test::LwrPoint tip = test::lwr_flange(test::lwr_bent());
+  Controller controller(test::lwr_settings());
+  ASSERT_TRUE(controller.start(test::lwr_bent()));
+  const Obstacle near{.distance_m = 0.05, .direction_world = Vector3d::UnitX()};
+  for (const Obstacle& obstacle : {near, Obstacle{}, Obstacle{}}) {
+    const CycleOutput output = controller.cycle(
+        {.task = {tip.jacobian, Vector3d::Zero()}, .end_effector = obstacle, .body = {}, .further_tasks = {}});
+    EXPECT_EQ(output.repulsion_m_s.norm() > 0, obstacle.distance_m.has_value());
+  }
+}
+
+TEST(Controller, BrakesWithEveryJointsOwnAcceleration) {
+  Cell cell(test::lwr_settings(), 0);
+  for (int k = 0; k < 1000; ++k) {
+    cell.period(kFarAway);
+  }
+  const JointLimits limits = test::lwr_settings().limits;
+  const double period_s = test::lwr_settings().period_s;
+  JointVector before = cell.controller.last().velocity_rad_s;
+  ASSERT_GT(before.norm(), 0.1);
+  for (int k = 0; k < 1000; ++k) {
+    const JointVector now = cell.controller.brake().command.velocity_rad_s;
+    for (int j = 0; j < limits.joints(); ++j) {
+      const double expected = std::max(0.0, std::abs(before[j]) - limits.acceleration_rad_s2[j] * period_s);
+      ASSERT_NEAR(std::abs(now[j]), expected, 1e-12);
+      ASSERT_GE(now[j] * before[j], 0);
+    }
+    before = now;
+  }
+  EXPECT_EQ(before.norm(), 0);
+}
+
 TEST(Controller, SettingsAreChecked) {
   using depthgrid::test::thrown_message;
   ControllerSettings settings = test::lwr_settings();

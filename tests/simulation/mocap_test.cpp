@@ -3,6 +3,9 @@
 
 #include <cstdlib>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/simulation/mocap_clip.hpp"
@@ -94,6 +97,21 @@ TEST(Mocap, AClipIsZUpAndMovesStraightBetweenFrames) {
   EXPECT_LT((clip.at(0, T_world_floor)[0].b - Eigen::Vector3d(1, 2, 3.5)).norm(), 1e-12);
 }
 
+std::string as_windows_writes(const std::string& text) {
+  std::string result = "\xEF\xBB\xBF";
+  for (const char c : text) {
+    result += c == '\n' ? "\r\n" : std::string(1, c);
+  }
+  return result;
+}
+
+TEST(Mocap, AByteOrderMarkAndWindowsLinesAreIgnored) {
+  const MocapSkeleton skeleton = parse_asf(as_windows_writes(kAsf), "asf");
+  ASSERT_EQ(skeleton.bones.size(), 2U);
+  EXPECT_EQ(skeleton.bones[1].name, "ltibia");
+  EXPECT_EQ(parse_amc(as_windows_writes(kAmc), skeleton, "amc").size(), 2U);
+}
+
 std::string refusal(std::string asf, const std::string& from, const std::string& to, std::string amc = kAmc) {
   for (std::string* text : {&asf, &amc}) {
     const std::size_t at = text->find(from);
@@ -110,6 +128,39 @@ std::string refusal(std::string asf, const std::string& from, const std::string&
   return "accepted";
 }
 
+// The same motion in radians, whichever of the two files says so; what it says and is not known is no detail.
+TEST(Mocap, TheFramesSayTheirUnitOfAngles) {
+  const auto last = [](const std::string& asf, const std::string& amc) {
+    const MocapSkeleton skeleton = parse_asf(asf, "asf");
+    return joints(skeleton, parse_amc(amc, skeleton, "amc").back()).end_m;
+  };
+  const auto with = [](std::string text, const std::vector<std::pair<std::string, std::string>>& changes) {
+    for (const auto& [from, to] : changes) {
+      const std::size_t at = text.find(from);
+      EXPECT_NE(at, std::string::npos) << from;
+      text.replace(at, from.size(), to);
+    }
+    return text;
+  };
+  const std::string quarter = std::to_string(std::numbers::pi / 2);  // six digits
+  const std::string asf_rad = with(kAsf, {{"angle deg", "angle rad"}, {"0 0 90 XYZ", "0 0 " + quarter + " XYZ"}});
+  const std::vector<std::pair<std::string, std::string>> in_radians = {
+      {"0 90 0\n", "0 " + quarter + " 0\n"}, {"lfemur 90", "lfemur " + quarter}, {"ltibia 90", "ltibia " + quarter}};
+  const std::string amc_rad = with(kAmc, in_radians);
+  const std::vector<Eigen::Vector3d> expected = last(kAsf, kAmc);
+  const auto same = [&expected](const std::vector<Eigen::Vector3d>& ends) {
+    return (ends[0] - expected[0]).norm() < 1e-5 && (ends[1] - expected[1]).norm() < 1e-5;
+  };
+  EXPECT_TRUE(same(last(kAsf, with(amc_rad, {{":DEGREES", ":RADIANS"}}))));
+  EXPECT_TRUE(same(last(asf_rad, with(amc_rad, {{":DEGREES\n", ""}}))));
+  EXPECT_TRUE(same(last(asf_rad, kAmc)));
+  EXPECT_FALSE(same(last(kAsf, amc_rad)));
+  EXPECT_EQ(refusal(kAsf, ":DEGREES", ":DEGREES\n:RADIANS"),
+            "amc, line 4: says :DEGREES and :RADIANS, must say one of them");
+  EXPECT_EQ(refusal(kAsf, ":DEGREES", ":GRADIANS"),
+            "amc, line 3: ':GRADIANS' is not known, must be :FULLY-SPECIFIED, :DEGREES or :RADIANS");
+}
+
 TEST(Mocap, BrokenFilesAreRefusedWithLineAndRule) {
   EXPECT_EQ(refusal(kAsf, "", ""), "accepted");
   EXPECT_EQ(refusal(kAsf, "length 0.4", "length 400"),
@@ -118,7 +169,19 @@ TEST(Mocap, BrokenFilesAreRefusedWithLineAndRule) {
             "asf, line 16: bone 'lfemur' moves in 'l', must be rx, ry or rz");
   EXPECT_EQ(refusal(kAsf, "root lfemur\n", ""), "asf, line 31: 'lfemur' has children before it has a parent");
   EXPECT_EQ(refusal(kAsf, "lfemur ltibia\n", "lfemur foot\n"), "asf, line 32: 'foot' is no bone, or has two parents");
-  EXPECT_EQ(refusal(kAsf, "length 0.0254", "length 0"), "asf, line 5: unit of length is 0.000000, must be positive");
+  EXPECT_EQ(refusal(kAsf, "length 0.0254", "length 0"),
+            "asf, line 5: unit of length is 0.000000, must be positive, at least 0.0001");
+  EXPECT_EQ(refusal(kAsf, "length 0.0254", "length 1e-300"),
+            "asf, line 5: unit of length is 0.000000, must be positive, at least 0.0001");
+  EXPECT_EQ(refusal(kAsf, "angle deg", "angle gon"), "asf, line 6: unit of angles is 'gon', must be deg or rad");
+  EXPECT_EQ(refusal(std::string(kAsf) + ":units angle rad\n", "", ""),
+            "asf, line 34: the units stand behind the bones that are measured in them, must stand before");
+  EXPECT_EQ(refusal(kAsf, "id 2\n     name ltibia", "id 2\n     name l\x1b[2J"),
+            "asf, line 32: 'ltibia' is no bone, or has two parents");
+  EXPECT_EQ(refusal(kAsf, "lfemur ltibia\n", "lfemur l\x1b[2J\n"),
+            "asf, line 32: 'l\\x1b[2J' is no bone, or has two parents");
+  EXPECT_EQ(refusal(kAsf, "root 0.01", "root 2000"),
+            "amc, line 9: the root is more than 1000.000000 m away; are the units of length right?");
   EXPECT_EQ(refusal("", "", ""), "asf, line 1: has no bones, or no hierarchy of them");
   EXPECT_EQ(refusal(kAsf, "ltibia 90", "ltibia x"), "amc, line 11: 'x' is no number below 1e9");
   EXPECT_EQ(refusal(kAsf, "ltibia 90", "foot 90"), "amc, line 11: 'foot' is no bone of the skeleton");
