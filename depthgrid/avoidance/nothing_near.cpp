@@ -9,6 +9,7 @@ void NothingNear::evaluate(std::span<const Capsule> /*capsules*/, double /*now_s
   for (Answer& answer : answers) {
     answer = Answer{};
     answer.distance_now_m = std::numeric_limits<double>::max();
+    answer.blind_m = 0;
   }
 }
 

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "avoidance/flat_wall.hpp"
 #include "depthgrid/avoidance/history_port.hpp"
 #include "depthgrid/avoidance/nothing_near.hpp"
@@ -170,7 +173,7 @@ TEST_F(Loop, StandsWhereNoCameraHasSeenAnything) {
     (void)loop.cycle(arm, k * kPeriod);
   }
   for (const Answer& answer : loop.answers()) {
-    EXPECT_EQ(control::obstacle_of(answer).distance_m.value_or(0), 0);
+    EXPECT_EQ(control::obstacle_of(answer, control::BlindLayer::kept_clear).distance_m.value_or(0), 0);
   }
   // The law of the risk leaves 1 - f(0) of the task, and of each joint's speed.
   const auto& repulsion = settings.controller.repulsion;
@@ -207,6 +210,104 @@ TEST_F(Loop, DoesNotAllocateWithTheSearch) {
   EXPECT_NE(loop.answers()[0].nearest.state, ProximityState::not_evaluated);
 }
 
+/// Says of every part that something is so far away in this direction, with a layer so thick.
+class Says final : public DistanceEvaluator {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "says"; }
+  [[nodiscard]] std::size_t camera_count() const noexcept override { return 0; }
+  [[nodiscard]] double image_time_s(std::size_t) const noexcept override { return Proximity::kNaN; }
+  [[nodiscard]] FrameUpdate update(std::size_t, const Frame&) noexcept override { return {}; }
+  [[nodiscard]] FrameUpdate update(std::size_t, const Frame&, const Pose&) noexcept override { return {}; }
+  void evaluate(std::span<const Capsule> capsules, double, std::span<Answer> answers) noexcept override {
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      answers[i] = Answer{};
+      answers[i].nearest = {.distance_m = distance_m,
+                            .nearest_world = capsules[i].a + distance_m * towards,
+                            .direction_world = towards,
+                            .state = ProximityState::measured,
+                            .camera = std::nullopt};
+      answers[i].distance_now_m = distance_m;
+      answers[i].on_axis_world = capsules[i].a;
+      answers[i].hybrid_direction_world = towards;
+      answers[i].blind_m = blind_m;
+    }
+  }
+  double distance_m = 1;
+  double blind_m = 0;
+  Eigen::Vector3d towards = Eigen::Vector3d::UnitX();
+};
+
+/// What the arm has done after half a second of cycles.
+struct Moved {
+  control::JointVector command_rad;
+  CycleReport report;
+  std::vector<PartState> states;
+};
+
+class BlindLoop : public Loop {
+ protected:
+  Moved moved(double distance_m, double blind_m, control::BlindLayer layer = control::BlindLayer::kept_clear) {
+    LoopSettings settings = test::loop_settings(robot::moving_capsules(model_));
+    settings.end_effector_limits = true;
+    settings.blind_layer = layer;
+    Says says;
+    says.distance_m = distance_m;
+    says.blind_m = blind_m;
+    control::PolygonTask task(test::hexagon(model_));
+    AvoidanceLoop loop({model_}, task, says, settings);
+    control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+    EXPECT_TRUE(loop.start(arm));
+    for (int k = 0; k < 250; ++k) {
+      EXPECT_TRUE(loop.cycle(arm, k * kPeriod));
+      arm.advance();
+    }
+    return {loop.report().output.command.position_rad, loop.report(), {loop.states().begin(), loop.states().end()}};
+  }
+};
+
+// The layer is no distance: with it 0.1 m thick an obstacle at 0.3 m is as near as one at 0.2 m without.
+TEST_F(BlindLoop, CountsDistancesFromTheSurfaceOfTheLayer) {
+  for (const double clear_m : {0.02, 0.1, 0.2, 0.35}) {
+    const Moved bare = moved(clear_m, 0);
+    for (const double blind_m : {0.05, 0.158, 0.35}) {
+      const Moved padded = moved(clear_m + blind_m, blind_m);
+      EXPECT_LT((padded.command_rad - bare.command_rad).norm(), 1e-6) << clear_m << ", " << blind_m;
+      EXPECT_EQ(padded.report.blind_m, blind_m);
+      EXPECT_EQ(padded.report.in_blind_layer + padded.report.unknown, 0);
+    }
+  }
+}
+
+TEST_F(BlindLoop, TakesADistanceWithinTheLayerForContactAndSaysSo) {
+  const Moved contact = moved(0, 0);
+  EXPECT_EQ(contact.report.in_blind_layer, 0) << "there is no layer";
+  for (const double distance_m : {0.0, 0.05, 0.158}) {
+    const Moved within = moved(distance_m, 0.158);
+    EXPECT_LT((within.command_rad - contact.command_rad).norm(), 1e-6) << distance_m;
+    EXPECT_EQ(within.report.in_blind_layer, static_cast<int>(within.states.size()));
+    for (const PartState state : within.states) {
+      EXPECT_EQ(to_string(state), "blind layer");
+    }
+  }
+}
+
+TEST_F(BlindLoop, UsesNoDistanceWithoutItsLayer) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Moved unstated = moved(0.3, kNaN);
+  EXPECT_LT((unstated.command_rad - moved(kNaN, 0).command_rad).norm(), 1e-6) << "as where no distance is known";
+  EXPECT_EQ(unstated.report.unknown, static_cast<int>(unstated.states.size()));
+  EXPECT_TRUE(std::isnan(unstated.report.blind_m));
+  EXPECT_EQ(to_string(unstated.states[0]), "unknown");
+}
+
+TEST_F(BlindLoop, MayIgnoreTheLayerAsTheLettersLoopDoes) {
+  const Moved ignored = moved(0.2, 0.15, control::BlindLayer::ignored);
+  EXPECT_LT((ignored.command_rad - moved(0.2, 0).command_rad).norm(), 1e-6);
+  EXPECT_GT((ignored.command_rad - moved(0.2, 0.15).command_rad).norm(), 1e-4);
+  EXPECT_EQ(ignored.report.in_blind_layer, 0);
+  EXPECT_EQ(ignored.report.blind_m, 0.15) << "it is reported all the same";
+}
+
 /// Keeps the flange where and as it is: six rows.
 class Hold final : public control::MotionTask {
  public:
@@ -225,6 +326,48 @@ class Hold final : public control::MotionTask {
  private:
   Pose T_world_tip_;
 };
+
+// Whatever a loop has done before, after start() it does what a new one does: no memory of contacts or directions, no
+// old answers, and a clock that may begin anew.
+TEST_F(Loop, StartsAgainAsANewOneDoes) {
+  LoopSettings settings = test::loop_settings(robot::moving_capsules(model_));
+  settings.end_effector_limits = true;
+  settings.evaluate_every = 7;
+  settings.controller.pivot = control::PivotSettings{};
+  Pose goal = test::flange(model_);
+  goal.translation() += Eigen::Vector3d(0.1, 0, 0.1);
+  Hold task(goal);
+  const auto run = [&](AvoidanceLoop& loop, Says& says, const Eigen::Vector3d& towards, bool contact, double start_s) {
+    control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+    EXPECT_TRUE(loop.start(arm));
+    std::vector<control::JointVector> commands;
+    for (int k = 0; k < 40; ++k) {
+      // At contact there is no direction: one may be remembered from before.
+      const bool touches = contact && k < settings.evaluate_every;
+      says.distance_m = touches ? 0.0 : 0.15;
+      says.towards = touches ? Eigen::Vector3d::Zero() : towards;
+      EXPECT_TRUE(loop.cycle(arm, start_s + k * kPeriod));
+      EXPECT_EQ(loop.report().evaluated, k % settings.evaluate_every == 0) << k;
+      commands.push_back(loop.report().output.command.position_rad);
+      arm.advance();
+    }
+    return commands;
+  };
+  for (const auto& [brakes, contact] : {std::pair(false, false), std::pair(false, true), std::pair(true, true)}) {
+    Says says_used;
+    Says says_new;
+    AvoidanceLoop used({model_}, task, says_used, settings);
+    (void)run(used, says_used, Eigen::Vector3d(0.6, 0, 0.8), contact, 100);
+    if (brakes) {
+      control::SimulatedArm arm(settings.controller.limits, kPeriod, test::bent());
+      EXPECT_FALSE(used.cycle(arm, 1)) << "the clock went back";
+    }
+    AvoidanceLoop fresh({model_}, task, says_new, settings);
+    const Eigen::Vector3d towards(0, 0.6, -0.8);
+    EXPECT_EQ(run(used, says_used, towards, contact, 50), run(fresh, says_new, towards, contact, 50));
+    EXPECT_EQ(used.report().reason.limit, fresh.report().reason.limit);
+  }
+}
 
 TEST_F(Loop, MovesByATaskOfSixRows) {
   Pose goal = test::flange(model_);

@@ -20,6 +20,7 @@ inline Rig one_camera() {
   rig.cameras[0].intrinsics = from_opencv(64, 48, 52.5, 52.5, 31.5, 23.5);
   rig.cameras[0].T_world_camera = look_at({0, -2, 0.6}, {0, 0, 0.6});
   rig.cameras[0].margins = sensor_margins(sensor_model("ideal"), rig.cameras[0].intrinsics, 0.001);
+  rig.cameras[0].margins->smallest_obstacle_m = 0;
   return rig;
 }
 

@@ -105,7 +105,7 @@ TEST(SurveillanceRadius, LeavesRhoUntilTheImageIsAsOldAsItMayBe) {
   constexpr double kGreatestAge_s = 0.06;
   const Rig rig = test::one_camera();
   views::Settings settings = test::search_settings(rig);
-  settings.rho_m = views::surveillance_radius_m(kRho_m, settings.v_max_m_s, kGreatestAge_s);
+  settings.rho_m = views::surveillance_radius_m(kRho_m, settings.v_max_m_s, kGreatestAge_s, 0);
   EXPECT_EQ(settings.rho_m, kRho_m + 2 * kGreatestAge_s);
   search::SearchEvaluator evaluator(rig, settings);
   const std::vector<float> wall(64 * 48, 3.2F);
@@ -123,9 +123,12 @@ TEST(SurveillanceRadius, LeavesRhoUntilTheImageIsAsOldAsItMayBe) {
 }
 
 TEST(SurveillanceRadius, RefusesWhatIsNoRadius) {
-  const auto refused = [](double rho_m, double v_max_m_s, double age_s) {
-    return thrown_message([&] { (void)views::surveillance_radius_m(rho_m, v_max_m_s, age_s); }) != "";
+  const auto refused = [](double rho_m, double v_max_m_s, double age_s, double blind_m = 0) {
+    return thrown_message([&] { (void)views::surveillance_radius_m(rho_m, v_max_m_s, age_s, blind_m); }) != "";
   };
+  EXPECT_FALSE(refused(0.4, 1, 0.1, 0.2));
+  EXPECT_TRUE(refused(0.4, 1, 0.1, -0.2));
+  EXPECT_TRUE(refused(0.4, 1, 0.1, std::nan("")));
   EXPECT_FALSE(refused(0.4, 0, 0));
   EXPECT_TRUE(refused(0, 1, 1));
   EXPECT_TRUE(refused(0.4, -1, 0));
