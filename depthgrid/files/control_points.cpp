@@ -5,9 +5,14 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/number_parsing.hpp"
+#include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/core/rig.hpp"
+#include "depthgrid/core/text_encoding.hpp"
 #include "depthgrid/files/text_file.hpp"
 
 namespace depthgrid::files {
@@ -41,6 +46,9 @@ struct Place {
   fail(place.name, ": ", line, "column ", value.column, ": ", rule);
 }
 
+/// As it can stand in a message.
+std::string quoted(const CsvValue& value) { return "'" + printable_excerpt(value.text) + "'"; }
+
 /// Values of one line between the commas, without the spaces around them.
 std::vector<CsvValue> split(std::string_view line) {
   std::vector<CsvValue> values;
@@ -60,6 +68,17 @@ bool equals_ignoring_case(std::string_view text, std::string_view lower) {
                     [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
+/// Lengths may say their unit: x_m. Another unit is another name.
+bool is_named(std::string_view text, std::string_view name) {
+  constexpr std::string_view kMetres = "_m";
+  const bool is_length = name != "frame" && name != "id";
+  if (is_length && text.size() > kMetres.size() &&
+      equals_ignoring_case(text.substr(text.size() - kMetres.size()), kMetres)) {
+    text.remove_suffix(kMetres.size());
+  }
+  return equals_ignoring_case(text, name);
+}
+
 /// The columns that a header names; nothing when the row is no header.
 std::optional<Columns> header_columns(const std::vector<CsvValue>& values) {
   constexpr std::array<std::string_view, 1 + kCapsule> kNames = {"frame",  "id", "x",  "y", "z",
@@ -68,9 +87,8 @@ std::optional<Columns> header_columns(const std::vector<CsvValue>& values) {
     for (const std::size_t of_point : {kPoint, kSphere, kCapsule}) {
       const Columns columns{frame, of_point};
       const auto* first = kNames.begin() + (frame ? 0 : 1);
-      if (std::equal(
-              values.begin(), values.end(), first, first + columns.count(),
-              [](const CsvValue& value, std::string_view name) { return equals_ignoring_case(value.text, name); })) {
+      if (std::equal(values.begin(), values.end(), first, first + columns.count(),
+                     [](const CsvValue& value, std::string_view name) { return is_named(value.text, name); })) {
         return columns;
       }
     }
@@ -90,10 +108,13 @@ Columns columns_without_header(const Place& place, const std::vector<CsvValue>& 
 double length_m(const Place& place, const CsvValue& value, const char* name) {
   const auto number = parse_number<double>(value.text);
   if (!number) {
-    fail_at(place, value, std::string(name) + " is '" + std::string(value.text) + "', must be a number in metres");
+    fail_at(place, value, std::string(name) + " is " + quoted(value) + ", must be a number in metres");
   }
   if (!std::isfinite(*number)) {
-    fail_at(place, value, std::string(name) + " is '" + std::string(value.text) + "', must be finite");
+    fail_at(place, value, std::string(name) + " is " + quoted(value) + ", must be finite");
+  }
+  if (std::abs(*number) > kLargestTranslation) {
+    fail_at(place, value, std::string(name) + " is " + quoted(value) + ", must be at most 1e5 m from 0");
   }
   return *number;
 }
@@ -108,7 +129,7 @@ ControlPoint point_of(const std::string& id, const Place& place, std::span<const
   if (values.size() >= kSphere - 1 && !values[3].text.empty()) {
     point.capsule.radius_m = length_m(place, values[3], "radius");
     if (point.capsule.radius_m < 0) {
-      fail_at(place, values[3], "radius is '" + std::string(values[3].text) + "', must not be negative");
+      fail_at(place, values[3], "radius is " + quoted(values[3]) + ", must not be negative");
     }
   }
   if (values.size() == kCapsule - 1) {
@@ -121,28 +142,35 @@ ControlPoint point_of(const std::string& id, const Place& place, std::span<const
   return point;
 }
 
-std::vector<ControlPoint>& points_of(ControlPoints& points, const Place& place, const Columns& columns,
-                                     const std::vector<CsvValue>& values) {
+/// Ids of each frame, or of frame 0 where points do not move; not quadratic in their number.
+using Ids = std::set<std::pair<int, std::string_view>>;
+
+int frame_of(const Place& place, const Columns& columns, const std::vector<CsvValue>& values) {
   if (!columns.frame) {
-    return points.fixed;
+    return 0;
   }
   const auto frame = parse_number<int>(values[0].text);
   if (!frame || *frame < 0) {
-    fail_at(place, values[0], "frame is '" + std::string(values[0].text) + "', must be a whole number from 0");
+    fail_at(place, values[0], "frame is " + quoted(values[0]) + ", must be a whole number from 0");
   }
-  return points.of_frame[*frame];
+  return *frame;
 }
 
-void add_point(ControlPoints& points, const Place& place, const Columns& columns, const std::vector<CsvValue>& values) {
+void add_point(ControlPoints& points, Ids& ids, const Place& place, const Columns& columns,
+               const std::vector<CsvValue>& values) {
   const std::span<const CsvValue> of_point = std::span(values).last(columns.of_point);
   const CsvValue& id = of_point[0];
-  std::vector<ControlPoint>& list = points_of(points, place, columns, values);
+  const int frame = frame_of(place, columns, values);
   if (id.text.empty()) {
     fail_at(place, id, "the id is empty, every control point needs one");
   }
-  if (std::any_of(list.begin(), list.end(), [&](const ControlPoint& point) { return point.id == id.text; })) {
-    fail_at(place, id, "id '" + std::string(id.text) + "' occurs twice, ids must be distinct");
+  if (!is_printable(id.text)) {
+    fail_at(place, id, "id " + quoted(id) + " holds a character that cannot be printed, ids must not");
   }
+  if (!ids.emplace(frame, id.text).second) {
+    fail_at(place, id, "id " + quoted(id) + " occurs twice, ids must be distinct");
+  }
+  std::vector<ControlPoint>& list = columns.frame ? points.of_frame[frame] : points.fixed;
   list.push_back(point_of(std::string(id.text), place, of_point.subspan(1)));
 }
 
@@ -157,8 +185,10 @@ std::span<const ControlPoint> ControlPoints::at(int frame_number) const noexcept
 }
 
 ControlPoints parse_control_points(std::string_view text, const std::string& name) {
+  text = without_byte_order_mark(text, name + ": ");
   ControlPoints points;
   Columns columns;  // as the first row has them
+  Ids ids;
   std::size_t line_number = 0;
   while (!text.empty()) {
     ++line_number;
@@ -182,7 +212,7 @@ ControlPoints parse_control_points(std::string_view text, const std::string& nam
               std::to_string(values.size()) + " values, must be " + std::to_string(columns.count()) +
                   " as in the first row");
     }
-    add_point(points, place, columns, values);
+    add_point(points, ids, place, columns, values);
   }
   if (points.fixed.empty() && points.of_frame.empty()) {
     fail(name, ": holds no control point, needs at least one row id,x,y,z");
@@ -195,8 +225,11 @@ ControlPoints load_control_points(const std::filesystem::path& file) {
 }
 
 ControlPoint parse_control_point(std::string_view text, const std::string& id) {
-  const std::string name = "control point '" + std::string(text) + "'";
+  const std::string name = "control point '" + printable_excerpt(text) + "'";
   const Place place{name, 0};
+  if (id.empty() || !is_printable(id)) {
+    fail(name, ": id '", printable_excerpt(id), "' is empty or holds a character that cannot be printed");
+  }
   const std::vector<CsvValue> values = split(text);
   if (values.size() != kPoint - 1 && values.size() != kSphere - 1 && values.size() != kCapsule - 1) {
     fail_at(place, values[0],

@@ -29,11 +29,12 @@ struct ControlPoints {
 };
 
 /// Reads comma-separated control points, metres: columns id,x,y,z, or frame,id,x,y,z for points that move. A first row
-/// with these names is a header and may be left out. Spheres and capsules need it: id,x,y,z,radius or
-/// id,x,y,z,radius,x2,y2,z2, with or without frame before; radius may be empty (0), and x2,y2,z2 together (no capsule).
-/// Blank lines and everything behind # are skipped, spaces around values too. Throws Error that names file, line,
-/// column (counted in characters from 1) and value: a wrong number of values, no number, NaN or infinity, a negative
-/// radius, an empty or doubled id (in the same frame), a file without points.
+/// with these names (x,y,z or x_m,y_m,z_m) is a header and may be left out. Spheres and capsules need it:
+/// id,x,y,z,radius or id,x,y,z,radius,x2,y2,z2, with or without frame before; radius may be empty (0), and x2,y2,z2
+/// together (no capsule). Blank lines and everything behind # are skipped, spaces around values too. Throws Error that
+/// names file, line, column (counted in characters from 1) and value: a wrong number of values, no number, NaN or
+/// infinity, a coordinate or radius beyond kLargestTranslation, a negative radius, an empty or doubled id (in the same
+/// frame) or one that cannot be printed (UTF-8 without control characters), a file without points.
 ControlPoints load_control_points(const std::filesystem::path& file);
 
 /// The same from text. `name` stands for the file in messages.

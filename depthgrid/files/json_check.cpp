@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 
 namespace depthgrid::files {
 namespace {
@@ -108,6 +109,15 @@ class KeyCheck {
   const std::string& name_;
 };
 
+/// What our schema says beside its rules about values that break them.
+std::string hint_of(const Value& rules, const std::string& keyword) {
+  const auto hints = rules.FindMember("hints");
+  if (hints == rules.MemberEnd() || !hints->value.IsObject() || !hints->value.HasMember(keyword.c_str())) {
+    return {};
+  }
+  return "; " + std::string(text_of(hints->value[keyword.c_str()]));
+}
+
 /// What the schema says under the keyword that failed, and for `required` which key is missing.
 std::string broken_rule(const Value& value, const Value* rules, const std::string& keyword) {
   if (rules == nullptr || !rules->IsObject() || !rules->HasMember(keyword.c_str())) {
@@ -123,7 +133,7 @@ std::string broken_rule(const Value& value, const Value* rules, const std::strin
   }
   const bool exclusive = keyword == "minimum" && rules->HasMember("exclusiveMinimum");
   return "value " + excerpt(value) + " breaks the rule \"" + keyword + "\": " + excerpt(rule) +
-         (exclusive ? " (exclusive)" : "");
+         (exclusive ? " (exclusive)" : "") + hint_of(*rules, keyword);
 }
 
 }  // namespace
@@ -133,7 +143,7 @@ std::string excerpt(const Value& value) {
   rapidjson::StringBuffer buffer;
   rapidjson::Writer<rapidjson::StringBuffer> writer(buffer);
   value.Accept(writer);
-  std::string text(buffer.GetString(), buffer.GetSize());
+  std::string text = printable({buffer.GetString(), buffer.GetSize()});  // an escaped half of a surrogate is no UTF-8
   if (text.size() > kLongest) {
     std::size_t end = kLongest;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {

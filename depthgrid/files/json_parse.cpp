@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/text_encoding.hpp"
 #include "depthgrid/files/json_check.hpp"
 
 namespace depthgrid::files {
@@ -102,6 +103,7 @@ std::string surroundings(std::string_view line, std::size_t column) {
 }  // namespace
 
 rapidjson::Document parse_json(std::string_view text, const std::string& name) {
+  text = without_byte_order_mark(text, name + ": ");
   // RapidJSON takes a NUL for the end of the text and would not see what stands behind it.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     fail_at(text, nul, name, "A NUL byte.");

@@ -9,10 +9,13 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/whole_file.hpp"
+#include "depthgrid/files/image_kind.hpp"
 #include "depthgrid/files/png.hpp"
 
 namespace depthgrid::files {
@@ -23,7 +26,7 @@ constexpr std::size_t kSignatureBytes = 8;
 /// libpng reports errors by longjmp. Functions that call setjmp below therefore hold only trivial objects, and all
 /// that must be released lives here, outside of their reach.
 struct Reader {
-  std::FILE* stream = nullptr;
+  InputStream stream;
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::array<char, 160> message{};
@@ -34,9 +37,6 @@ struct Reader {
   ~Reader() {
     if (png != nullptr) {
       png_destroy_read_struct(&png, &info, nullptr);
-    }
-    if (stream != nullptr) {
-      static_cast<void>(std::fclose(stream));
     }
   }
 };
@@ -52,7 +52,7 @@ void on_warning(png_structp /*png*/, png_const_charp /*message*/) {}  // a libra
 
 void read_bytes(png_structp png, png_bytep bytes, std::size_t count) {
   auto* reader = static_cast<Reader*>(png_get_io_ptr(png));
-  if (std::fread(bytes, 1, count, reader->stream) != count) {
+  if (std::fread(bytes, 1, count, reader->stream.get()) != count) {
     png_error(png, "the file ends too early (truncated)");
   }
 }
@@ -109,16 +109,20 @@ void open(Reader& reader, const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file, ignored)) {
     fail(file.string(), ": is a folder, needs to be a 16-bit grayscale PNG file");
   }
-  reader.stream = std::fopen(file.c_str(), "rb");
-  if (reader.stream == nullptr) {
-    fail(file.string(), ": cannot be opened: ", std::generic_category().message(errno));
-  }
+  reader.stream = open_regular_file(file);
   std::array<png_byte, kSignatureBytes> signature{};
-  const std::size_t count = std::fread(signature.data(), 1, signature.size(), reader.stream);
+  const std::size_t count = std::fread(signature.data(), 1, signature.size(), reader.stream.get());
   if (count == 0) {
     fail(file.string(), ": is empty (0 bytes), needs to be a 16-bit grayscale PNG file");
   }
+  if (std::string_view(reinterpret_cast<const char*>(signature.data()), count) == "version ") {
+    fail(file.string(), ": is no PNG file but text, probably a Git LFS pointer: run `git lfs pull` in its repository");
+  }
   if (png_sig_cmp(signature.data(), 0, count) != 0) {
+    const std::string_view kind = image_kind_of_bytes({reinterpret_cast<const char*>(signature.data()), count});
+    if (!kind.empty()) {
+      fail(file.string(), ": is no PNG file but ", kind, ", ", way_to_png(kind));
+    }
     fail(file.string(), ": is no PNG file: its first bytes are not PNG's signature");
   }
   if (count < kSignatureBytes) {
@@ -132,8 +136,7 @@ void open(Reader& reader, const std::filesystem::path& file) {
 }
 
 /// Deflate packs at most 1032 bytes into one, so that a header alone cannot make us allocate an image.
-void check_plausible(const std::filesystem::path& file, std::uint64_t image_bytes, png_uint_32 width,
-                     png_uint_32 height) {
+void check_header(const std::filesystem::path& file, std::uint64_t image_bytes, png_uint_32 width, png_uint_32 height) {
   constexpr std::uint64_t kLargestRatio = 1032;
   std::error_code error;
   const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
@@ -143,9 +146,14 @@ void check_plausible(const std::filesystem::path& file, std::uint64_t image_byte
   }
 }
 
-}  // namespace
+struct PngSize {
+  int width_px = 0;
+  int height_px = 0;
+};
 
-void read_png16(const std::filesystem::path& file, Gray16Image& image) {
+/// `expected`: the camera's size, 0 x 0: any.
+void read_png(const std::filesystem::path& file, const PngSize& expected, const std::string& expected_by,
+              Gray16Image& image) {
   Reader reader;
   open(reader, file);
   if (!read_header(reader)) {
@@ -161,14 +169,32 @@ void read_png16(const std::filesystem::path& file, Gray16Image& image) {
   if (width > png_uint_32{kLargestImageSide} || height > png_uint_32{kLargestImageSide}) {
     fail(file.string(), ": is ", width, " x ", height, " pixels, a side must be at most ", kLargestImageSide);
   }
+  if (expected.width_px != 0 && (width != static_cast<png_uint_32>(expected.width_px) ||
+                                 height != static_cast<png_uint_32>(expected.height_px))) {
+    fail(file.string(), ": is ", width, " x ", height, " pixels, the calibration of ", expected_by, " is for ",
+         expected.width_px, " x ", expected.height_px);
+  }
   const std::uint64_t count = std::uint64_t{width} * height;
-  check_plausible(file, count * sizeof(std::uint16_t), width, height);
+  if (count > kLargestImagePixels) {
+    fail(file.string(), ": is ", width, " x ", height, " = ", count, " pixels, must have at most ",
+         kLargestImagePixels);
+  }
+  check_header(file, count * sizeof(std::uint16_t), width, height);
   image.pixels.resize(count);
   image.width_px = static_cast<int>(width);
   image.height_px = static_cast<int>(height);
   if (!read_pixels(reader, image.pixels.data(), width, height)) {
     fail(file.string(), ": broken PNG: ", reader.message.data());
   }
+}
+
+}  // namespace
+
+void read_png16(const std::filesystem::path& file, Gray16Image& image) { read_png(file, {}, {}, image); }
+
+void read_png16(const std::filesystem::path& file, const PinholeCamera& camera, const std::string& id,
+                Gray16Image& image) {
+  read_png(file, {camera.width_px, camera.height_px}, "camera '" + id + "'", image);
 }
 
 Gray16Image read_png16(const std::filesystem::path& file) {

@@ -2,24 +2,39 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/plausibility.hpp"
+#include "depthgrid/core/rectification.hpp"
+#include "depthgrid/files/camera_poses.hpp"
+#include "depthgrid/files/foreign_recording.hpp"
+#include "depthgrid/files/frame_table.hpp"
 
 namespace depthgrid::files {
 namespace {
 
 std::filesystem::path rig_path(const std::filesystem::path& path) {
+  refuse_foreign_recording(path);
   std::error_code ignored;
   return std::filesystem::is_directory(path, ignored) ? path / "rig.json" : path;
+}
+
+/// Throws ChoiceError with the parts streamed one after the other into one line.
+template <class... Parts>
+[[noreturn]] void fail_choice(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  throw ChoiceError(text.str());
 }
 
 std::size_t index_of(const Rig& rig, const std::string& id, const std::string& name) {
   try {
     return camera_index(rig, id);
   } catch (const Error& error) {
-    fail(name, ": ", error.what());
+    fail_choice(name, ": ", error.what());
   }
 }
 
@@ -31,16 +46,30 @@ RigFile select(RigFile all, const std::vector<std::string>& ids, const std::stri
   RigFile chosen = all;
   chosen.rig.cameras.clear();
   chosen.depth_files.clear();
+  chosen.tracks.clear();
   std::set<std::string> seen;
   for (const std::string& id : ids) {
     if (!seen.insert(id).second) {
-      fail(name, ": camera '", id, "' is chosen twice");
+      fail_choice(name, ": camera '", id, "' is chosen twice");
     }
     const std::size_t k = index_of(all.rig, id, name);
     chosen.rig.cameras.push_back(all.rig.cameras[k]);
     chosen.depth_files.push_back(all.depth_files[k]);
+    if (!all.tracks.empty()) {
+      chosen.tracks.push_back(all.tracks[k]);
+    }
   }
   return chosen;
+}
+
+/// Before anybody takes memory for such images.
+void check_size(const RigCamera& camera, const std::string& name) {
+  const PinholeCamera& c = camera.intrinsics;
+  const auto pixels = static_cast<std::uint64_t>(c.width_px) * static_cast<std::uint64_t>(c.height_px);
+  if (pixels > kLargestImagePixels) {
+    fail(name, ": camera '", camera.id, "' has ", c.width_px, " x ", c.height_px, " = ", pixels,
+         " pixels, images must have at most ", kLargestImagePixels);
+  }
 }
 
 }  // namespace
@@ -49,58 +78,143 @@ Recording::Recording(const std::filesystem::path& path, const RecordingOptions& 
   rig_file_ = rig_path(path);
   const std::string name = rig_file_.string();
   file_ = select(load_rig(rig_file_), options.camera_ids, name);
+  const std::filesystem::path folder = rig_file_.parent_path();
+  table_ = std::make_shared<const FrameTable>(file_, folder, name);
+  poses_.resize(file_.rig.cameras.size());
+  for (std::size_t k = 0; k < file_.tracks.size(); ++k) {
+    if (file_.tracks[k].moves()) {
+      if (!file_.tracks[k].trajectory.empty() && !table_->by_time()) {
+        fail(name, ": camera '", file_.rig.cameras[k].id,
+             "' has a trajectory, and its images have numbers, not times; give a depth_list (time_s file)");
+      }
+      poses_[k] = std::make_shared<const CameraPoses>(file_.tracks[k], folder, file_.pose_gap_s);
+    }
+  }
   channels_.resize(file_.rig.cameras.size());
   frames_.resize(file_.rig.cameras.size());
   for (std::size_t k = 0; k < file_.rig.cameras.size(); ++k) {
     RigCamera& camera = file_.rig.cameras[k];
-    if (file_.depth_files[k].empty()) {
-      fail(name, ": camera '", camera.id, "' has no depth_files, so there are no images to read");
-    }
     camera.rule.near_m = options.near_m.value_or(camera.rule.near_m);
     camera.rule.far_m = options.far_m.value_or(camera.rule.far_m);
     camera.rule.clamp_beyond_far = options.clamp_beyond_far.value_or(camera.rule.clamp_beyond_far);
-    validate(camera.rule, (name + ": camera '" + camera.id + "'").c_str());
+    try {
+      validate(camera.rule, (name + ": camera '" + camera.id + "'").c_str());
+      check_plausible(camera.rule, (name + ": camera '" + camera.id + "'").c_str());
+    } catch (const Error& error) {
+      throw ChoiceError(error.what());  // the file's own rule is valid
+    }
     const PinholeCamera& intrinsics = camera.intrinsics;
+    channels_[k].recorded = intrinsics;
+    check_size(camera, name);
     if (distorts(camera.distortion)) {
-      channels_[k].undistortion.emplace(intrinsics, camera.distortion, intrinsics);
+      const PinholeCamera rectified = rectified_camera(intrinsics, camera.distortion);
+      const int own_lateral_px = camera.margins ? camera.margins->sensor.lateral_px : SensorMargin{}.lateral_px;
+      channels_[k].undistortion.emplace(intrinsics, camera.distortion, rectified,
+                                        options.lateral_px.value_or(own_lateral_px));
       channels_[k].distorted = DepthImage(intrinsics.width_px, intrinsics.height_px);
-      channels_[k].undistorted = DepthImage(intrinsics.width_px, intrinsics.height_px);
+      channels_[k].undistorted = DepthImage(rectified.width_px, rectified.height_px);
+      camera.intrinsics = rectified;
     }
     camera.distortion = {};
   }
 }
 
-std::filesystem::path Recording::depth_file(int index, std::size_t camera) const {
+int Recording::frame_count() const noexcept { return table_->count(); }
+int Recording::frame_number(int index) const noexcept { return table_->number(index); }
+bool Recording::has_time_stamps() const noexcept { return table_->by_time(); }
+bool Recording::simultaneous() const noexcept { return table_->simultaneous(); }
+
+void Recording::check_place(int index, std::size_t camera) const {
   if (index < 0 || index >= frame_count()) {
     fail(rig_file_.string(), ": there is no frame index ", index, ", must be from 0 to ", frame_count() - 1);
   }
   if (camera >= file_.depth_files.size()) {
     fail(rig_file_.string(), ": there is no camera index ", camera, ", must be below ", file_.depth_files.size());
   }
-  return rig_file_.parent_path() / depth_file_name(file_.depth_files[camera], frame_number(index));
+}
+
+std::optional<double> Recording::time_s(int index) const {
+  check_place(index, 0);
+  const auto time_s = table_->time_s(index, 0);
+  return time_s ? std::optional(*time_s - *table_->time_s(0, 0)) : std::nullopt;
+}
+
+bool Recording::has_image(int index, std::size_t camera) const {
+  check_place(index, camera);
+  return table_->file(index, camera).has_value();
+}
+
+std::filesystem::path Recording::depth_file(int index, std::size_t camera) const {
+  check_place(index, camera);
+  const auto file = table_->file(index, camera);
+  if (!file) {
+    fail(rig_file_.string(), ": camera '", file_.rig.cameras[camera].id, "' has no image in frame ",
+         frame_number(index));
+  }
+  return rig_file_.parent_path() / *file;
+}
+
+bool Recording::moves() const noexcept {
+  return std::any_of(poses_.begin(), poses_.end(), [](const auto& poses) { return poses != nullptr; });
+}
+
+bool Recording::has_trajectory() const noexcept {
+  return std::any_of(file_.tracks.begin(), file_.tracks.end(),
+                     [](const auto& track) { return !track.trajectory.empty(); });
+}
+
+Pose Recording::T_world_camera(int index, std::size_t camera) const {
+  check_place(index, camera);
+  return moves(camera) ? poses_[camera]->at(frame_number(index), table_->time_s(index, camera))
+                       : file_.rig.cameras[camera].T_world_camera;
+}
+
+std::vector<std::filesystem::path> Recording::files_of(int index) const {
+  std::vector<std::filesystem::path> files;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    if (has_image(index, k)) {
+      files.push_back(depth_file(index, k));
+    }
+    if (moves(k)) {
+      files.push_back(poses_[k]->file(frame_number(index)));
+    }
+    if (k < file_.tracks.size() && !file_.tracks[k].depth_list.empty()) {
+      files.push_back(rig_file_.parent_path() / file_.tracks[k].depth_list);
+    }
+  }
+  return files;
+}
+
+const DepthImage* Recording::distorted(std::size_t camera) const {
+  return channels_.at(camera).undistortion ? &channels_[camera].distorted : nullptr;
+}
+
+std::vector<bool> Recording::pixels_read(std::size_t camera) const {
+  return channels_.at(camera).undistortion ? channels_[camera].undistortion->pixels_read() : std::vector<bool>();
 }
 
 std::span<const Frame> Recording::read(int index) {
+  check_place(index, 0);
   for (std::size_t k = 0; k < channels_.size(); ++k) {
     const RigCamera& camera = file_.rig.cameras[k];
     Channel& channel = channels_[k];
-    const std::filesystem::path image_file = depth_file(index, k);
-    read_png16(image_file, channel.raw);
-    const int width_px = camera.intrinsics.width_px;
-    const int height_px = camera.intrinsics.height_px;
-    if (channel.raw.width_px != width_px || channel.raw.height_px != height_px) {
-      fail(image_file.string(), ": is ", channel.raw.width_px, " x ", channel.raw.height_px,
-           " pixels, the calibration of camera '", camera.id, "' is for ", width_px, " x ", height_px);
-    }
     Frame& frame = frames_[k];
+    frame = Frame{};
+    const auto time_s = table_->time_s(index, k);
+    frame.time_s = time_s ? *time_s - *table_->time_s(0, 0) : index;
+    if (table_->by_time() && !has_image(index, k)) {
+      continue;
+    }
+    const std::filesystem::path image_file = depth_file(index, k);
+    read_png16(image_file, channel.recorded, camera.id, channel.raw);
+    const int width_px = channel.recorded.width_px;
+    const int height_px = channel.recorded.height_px;
     frame.depth = depth_view(channel.raw.pixels, width_px, height_px, camera.metres_per_unit);
     if (channel.undistortion) {
       normalise(frame.depth, camera.rule, channel.distorted);
       channel.undistortion->apply(channel.distorted, channel.undistorted);
-      const auto pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
-      frame.depth = depth_view(std::span<const float>(channel.undistorted.data(), pixels), width_px, height_px);
+      frame.depth = depth_view(channel.undistorted);
     }
-    frame.time_s = file_.rate_hz ? index / *file_.rate_hz : index;
   }
   return frames_;
 }

@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/plausibility.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/files/depth_file_pattern.hpp"
+#include "depthgrid/files/foreign_recording.hpp"
 #include "depthgrid/files/json_check.hpp"
 #include "depthgrid/files/rig_margins.hpp"
 #include "depthgrid/files/text_file.hpp"
@@ -17,6 +20,8 @@ namespace depthgrid::files {
 namespace {
 
 using rapidjson::Value;
+
+constexpr std::uint64_t kLargestRigText = std::uint64_t{16} << 20U;  // some ten times that as a document in memory
 
 /// Runs a check of the library and puts the place in front of its message.
 template <class Check>
@@ -38,8 +43,8 @@ std::string name_text(const Value& string) { return {string.GetString(), string.
 /// Names go into messages, tables and file names: one line, no NUL.
 std::string name_of(const Value& string) {
   std::string text = name_text(string);
-  if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; })) {
-    fail(excerpt(string), " holds a control character, names must not");
+  if (!is_printable(text)) {
+    fail("\"", printable(text), "\" holds a control character, names must not");
   }
   return text;
 }
@@ -51,21 +56,19 @@ Pose pose_of(const Value& rows) {
       matrix(row, column) = rows[row][column].GetDouble();
     }
   }
-  return pose_from_matrix(matrix, "matrix");
+  Pose pose = pose_from_matrix(matrix, "matrix");
+  check_plausible(pose, "matrix");
+  return pose;
 }
 
 Distortion distortion_of(const Value& value) {
-  static const std::map<std::string, Distortion::Model> kModels{{"none", Distortion::Model::none},
-                                                                {"brown_conrady", Distortion::Model::plumb_bob},
-                                                                {"plumb_bob", Distortion::Model::plumb_bob},
-                                                                {"rational", Distortion::Model::rational}};
   std::vector<double> coefficients;
   if (const Value* given = find(value, "coeffs")) {
     for (const Value& coefficient : given->GetArray()) {
       coefficients.push_back(coefficient.GetDouble());
     }
   }
-  return make_distortion(kModels.at(name_text(value["model"])), coefficients);
+  return make_distortion(distortion_model(name_text(value["model"])).value(), coefficients);  // the schema knows it
 }
 
 /// What the file says for all its cameras.
@@ -105,6 +108,7 @@ RigCamera camera_of(const Value& value, const Defaults& defaults, const std::str
   if (const Value* distortion = find(value, "distortion")) {
     camera.distortion = at_place(name, place + "/distortion", [&] { return distortion_of(*distortion); });
   }
+  at_place(name, place, [&] { check_plausible(camera.intrinsics, camera.distortion, "intrinsics"); });
   const Value* own_scale = find(value, "metres_per_unit");
   const Value* scale = own_scale != nullptr ? own_scale : defaults.metres_per_unit;
   if (scale == nullptr) {
@@ -115,8 +119,74 @@ RigCamera camera_of(const Value& value, const Defaults& defaults, const std::str
   camera.sensor = sensor != nullptr ? sensor->name : std::string_view();
   camera.margins = at_place(name, place + "/margins", [&] { return margins_of(value, sensor, camera); });
   camera.rule = at_place(name, place, [&] { return rule_of(value, defaults, sensor); });
-  camera.T_world_camera = at_place(name, place + "/T_world_cam", [&] { return pose_of(value["T_world_cam"]); });
+  at_place(name, place, [&] { check_plausible(camera.rule); });
+  if (const Value* pose = find(value, "T_world_cam")) {
+    camera.T_world_camera = at_place(name, place + "/T_world_cam", [&] { return pose_of(*pose); });
+  }
   return camera;
+}
+
+/// A path of the camera's entry, empty where there is none.
+std::string path_under(const Value& camera, const char* key, const std::string& name, const std::string& place) {
+  const Value* given = find(camera, key);
+  return given == nullptr ? std::string() : at_place(name, place + "/" + key, [&] {
+    std::string path = name_of(*given);
+    check_stays_inside(path);
+    return path;
+  });
+}
+
+/// What moves has no pose of its own, and what stands still has one.
+CameraTrack track_of(const Value& camera, const std::string& name, const std::string& place) {
+  CameraTrack track;
+  track.depth_list = path_under(camera, "depth_list", name, place);
+  track.trajectory = path_under(camera, "trajectory", name, place);
+  track.pose_files = path_under(camera, "pose_files", name, place);
+  const bool has_pose = find(camera, "T_world_cam") != nullptr;
+  if (!track.depth_list.empty() && find(camera, "depth_files") != nullptr) {
+    fail(name, ": ", place, ": has depth_files and depth_list, must have one of them");
+  }
+  if (!track.trajectory.empty() && !track.pose_files.empty()) {
+    fail(name, ": ", place, ": has trajectory and pose_files, must have one of them");
+  }
+  if (track.moves() && has_pose) {
+    fail(name, ": ", place, ": has T_world_cam, where it stands, and ",
+         track.trajectory.empty() ? "pose_files" : "trajectory",
+         ", where it moves; must have one of them (a camera on a moving body: T_body_cam)");
+  }
+  if (!track.moves() && !has_pose) {
+    fail(name, ": ", place,
+         ": key \"T_world_cam\" is missing; a camera that moves has \"trajectory\" or \"pose_files\" in "
+         "its place");
+  }
+  if (const Value* body = find(camera, "T_body_cam")) {
+    if (!track.moves()) {
+      fail(name, ": ", place, ": has T_body_cam, which is for cameras that move, with trajectory or pose_files");
+    }
+    track.T_body_camera = at_place(name, place + "/T_body_cam", [&] { return pose_of(*body); });
+  }
+  if (!track.pose_files.empty()) {
+    const std::string conversion =
+        at_place(name, place + "/pose_files", [&] { return checked_conversion(track.pose_files); });
+    if (conversion.empty() || conversion == kTimeConversion) {
+      fail(name, ": ", place, "/pose_files: '", track.pose_files, "' has no %d or %0Nd for the number of the frame");
+    }
+  }
+  return track;
+}
+
+/// Only where some camera has one.
+bool says_more(const CameraTrack& track) { return track.moves() || !track.depth_list.empty(); }
+
+/// A trajectory says where the camera was at a time, so the images must say theirs.
+void check_times(const CameraTrack& track, const std::string& depth_files, const std::string& name,
+                 const std::string& place) {
+  const bool may_have_times =
+      !track.depth_list.empty() || names_folder(depth_files) || checked_conversion(depth_files) == kTimeConversion;
+  if (!track.trajectory.empty() && !may_have_times) {
+    fail(name, ": ", place,
+         ": has a trajectory, and its images have numbers, not times; give a depth_list (time_s file)");
+  }
 }
 
 /// The camera's image names, checked against the number of frames and the conversion that /frames announces.
@@ -127,7 +197,7 @@ std::string depth_files_of(const Value& camera, int frame_count, const std::stri
   }
   std::string pattern = name_of(*given);
   const std::string conversion = checked_conversion(pattern);
-  if (conversion.empty() && frame_count > 1) {
+  if (conversion.empty() && frame_count > 1 && !names_folder(pattern)) {
     fail("'", pattern, "' has no %d or %0Nd, but /frames/count is ", frame_count);
   }
   if (!conversion.empty() && !announced.empty() && conversion != announced) {
@@ -143,6 +213,7 @@ std::string read_frames(const Value& frames, RigFile& file, const std::string& n
   }
   if (const Value* count = find(frames, "count")) {
     file.frame_count = count->GetInt();
+    file.count_stated = true;
   }
   if (const Value* simultaneous = find(frames, "simultaneous")) {
     file.simultaneous = simultaneous->GetBool();
@@ -150,12 +221,22 @@ std::string read_frames(const Value& frames, RigFile& file, const std::string& n
   if (const Value* rate = find(frames, "rate_hz"); rate != nullptr && rate->IsNumber()) {
     file.rate_hz = rate->GetDouble();
   }
+  if (const Value* tolerance = find(frames, "tolerance_s")) {
+    file.tolerance_s = tolerance->GetDouble();
+  }
+  if (const Value* gap = find(frames, "pose_gap_s")) {
+    file.pose_gap_s = gap->GetDouble();
+  }
+  if (const Value* clock = find(frames, "shared_clock")) {
+    file.shared_clock = clock->GetBool();
+  }
   const Value* pattern = find(frames, "pattern");
   if (pattern == nullptr) {
     return {};
   }
   std::string announced = name_text(*pattern);
-  if (at_place(name, "/frames/pattern", [&] { return checked_conversion(announced); }) != announced) {
+  if (announced == kTimeConversion ||
+      at_place(name, "/frames/pattern", [&] { return checked_conversion(announced); }) != announced) {
     fail(name, ": /frames/pattern: '", announced, "' is not a conversion %d or %0Nd and nothing else");
   }
   return announced;
@@ -173,6 +254,11 @@ void read_cameras(const Value& cameras, const Defaults& defaults, const std::str
     }
     file.depth_files.push_back(at_place(name, place + "/depth_files",
                                         [&] { return depth_files_of(cameras[k], file.frame_count, announced); }));
+    file.tracks.push_back(track_of(cameras[k], name, place));
+    check_times(file.tracks.back(), file.depth_files.back(), name, place);
+  }
+  if (std::none_of(file.tracks.begin(), file.tracks.end(), says_more)) {
+    file.tracks.clear();
   }
 }
 
@@ -201,9 +287,17 @@ RigFile parse_rig(std::string_view text, const std::string& name) {
   const std::string announced = frames != nullptr ? read_frames(*frames, file, name) : std::string();
   read_cameras(document["cameras"], defaults, announced, name, file);
   at_place(name, "/cameras", [&] { validate(file.rig); });
+  std::vector<Pose> poses;
+  for (const RigCamera& camera : file.rig.cameras) {
+    poses.push_back(camera.T_world_camera);
+  }
+  at_place(name, "/cameras", [&] { check_plausible_distances(poses); });
   return file;
 }
 
-RigFile load_rig(const std::filesystem::path& file) { return parse_rig(read_text_file(file), file.string()); }
+RigFile load_rig(const std::filesystem::path& file) {
+  refuse_foreign_recording(file);
+  return parse_rig(read_text_file(file, kLargestRigText), file.string());
+}
 
 }  // namespace depthgrid::files

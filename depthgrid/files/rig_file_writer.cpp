@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/files/depth_file_pattern.hpp"
 #include "depthgrid/files/rig_file.hpp"
 #include "depthgrid/files/text_file.hpp"
 
@@ -78,6 +79,9 @@ void write_distortion(Output& out, const Distortion& distortion) {
   } else if (distortion.model == Distortion::Model::rational) {
     model = "rational";
     count = 8;
+  } else if (distortion.model == Distortion::Model::equidistant) {
+    model = "equidistant";
+    count = 4;
   }
   out.key("distortion");
   out.begin_object();
@@ -124,10 +128,22 @@ void write_margins(Output& out, const CameraMargins& margins) {
   out.member("rotation_rad", margins.rotation_rad);
   out.member("half_exposure_s", margins.half_exposure_s);
   out.member("time_uncertainty_s", margins.time_uncertainty_s);
+  if (!std::isnan(margins.smallest_obstacle_m)) {
+    out.member("smallest_obstacle_m", margins.smallest_obstacle_m);
+  }
+  if (margins.second_view_x_m != 0) {
+    out.member("second_view_x_m", margins.second_view_x_m);
+  }
   out.end_object();
 }
 
-void write_camera(Output& out, const RigCamera& camera, const std::string& depth_files) {
+void write_path(Output& out, const char* key, const std::string& path) {
+  if (!path.empty()) {
+    out.member(key, path);
+  }
+}
+
+void write_camera(Output& out, const RigCamera& camera, const std::string& depth_files, const CameraTrack& track) {
   const Eigen::Vector2d principal_point = principal_point_opencv(camera.intrinsics);
   out.begin_object();
   out.member("id", camera.id);
@@ -146,10 +162,15 @@ void write_camera(Output& out, const RigCamera& camera, const std::string& depth
   if (camera.margins) {
     write_margins(out, *camera.margins);
   }
-  write_pose(out, "T_world_cam", camera.T_world_camera);
-  if (!depth_files.empty()) {
-    out.member("depth_files", depth_files);
+  if (!track.moves()) {
+    write_pose(out, "T_world_cam", camera.T_world_camera);
+  } else {
+    write_path(out, "trajectory", track.trajectory);
+    write_path(out, "pose_files", track.pose_files);
+    write_pose(out, "T_body_cam", track.T_body_camera);
   }
+  write_path(out, "depth_files", depth_files);
+  write_path(out, "depth_list", track.depth_list);
   out.end_object();
 }
 
@@ -157,10 +178,25 @@ void write_frames(Output& out, const RigFile& file) {
   out.key("frames");
   out.begin_object();
   out.member("first", file.first_frame);
-  out.member("count", file.frame_count);
+  // Where folders and lists say how many images there are, the count would be a limit.
+  const auto is_listed = [](const std::string& files) {
+    return files.empty() || names_folder(files) || checked_conversion(files) == kTimeConversion;
+  };
+  if (file.count_stated || std::none_of(file.depth_files.begin(), file.depth_files.end(), is_listed)) {
+    out.member("count", file.frame_count);
+  }
   out.member("simultaneous", file.simultaneous);
   if (file.rate_hz) {
     out.member("rate_hz", *file.rate_hz);
+  }
+  if (file.tolerance_s) {
+    out.member("tolerance_s", *file.tolerance_s);
+  }
+  if (file.pose_gap_s) {
+    out.member("pose_gap_s", *file.pose_gap_s);
+  }
+  if (file.shared_clock) {
+    out.member("shared_clock", *file.shared_clock);
   }
   out.end_object();
 }
@@ -174,6 +210,10 @@ std::string to_json(const RigFile& rig_file) {
     fail("rig '", rig.name, "': ", rig_file.depth_files.size(), " entries in depth_files for ", rig.cameras.size(),
          " cameras, needs one a camera (empty where there are no images)");
   }
+  if (!rig_file.tracks.empty() && rig_file.tracks.size() != rig.cameras.size()) {
+    fail("rig '", rig.name, "': ", rig_file.tracks.size(), " tracks for ", rig.cameras.size(),
+         " cameras, needs one a camera or none");
+  }
   Output out;
   out.begin_object();
   out.member("name", rig.name);
@@ -185,7 +225,8 @@ std::string to_json(const RigFile& rig_file) {
   out.key("cameras");
   out.begin_array();
   for (std::size_t k = 0; k < rig.cameras.size(); ++k) {
-    write_camera(out, rig.cameras[k], rig_file.depth_files[k]);
+    write_camera(out, rig.cameras[k], rig_file.depth_files[k],
+                 rig_file.tracks.empty() ? CameraTrack{} : rig_file.tracks[k]);
   }
   out.end_array();
   out.end_object();

@@ -19,6 +19,21 @@ bool take(const Value& object, const char* key, double& target) {
   return true;
 }
 
+/// Whether the entry says that its images were registered to another camera; none: it does not say.
+std::optional<bool> registered_of(const Value& camera) {
+  const auto registered = camera.FindMember("registered");
+  return registered != camera.MemberEnd() ? std::optional(registered->value.GetBool()) : std::nullopt;
+}
+
+void refuse_bands_of_registered(const Value& camera, const CameraMargins& margins) {
+  if (margins.second_view_x_m != 0 && registered_of(camera).value_or(false)) {
+    fail("second_view_x_m is ", margins.second_view_x_m,
+         " m and \"registered\" is true: in images that were registered to another camera shadow bands lie on both "
+         "sides, and nothing can be said of them; leave second_view_x_m out, or record images as the sensor computes "
+         "them");
+  }
+}
+
 }  // namespace
 
 const SensorModel* sensor_of(const Value& camera) {
@@ -33,6 +48,7 @@ std::optional<CameraMargins> margins_of(const Value& camera, const SensorModel* 
   std::optional<CameraMargins> margins;
   if (sensor != nullptr) {
     margins = sensor_margins(*sensor, calibrated.intrinsics, calibrated.metres_per_unit);
+    margins->second_view_x_m = registered_of(camera).value_or(true) ? 0.0 : sensor->second_view_x_m;
   }
   const auto own = camera.FindMember("margins");
   if (own == camera.MemberEnd()) {
@@ -56,6 +72,9 @@ std::optional<CameraMargins> margins_of(const Value& camera, const SensorModel* 
   take(given, "rotation_rad", result.rotation_rad);
   take(given, "half_exposure_s", result.half_exposure_s);
   take(given, "time_uncertainty_s", result.time_uncertainty_s);
+  take(given, "smallest_obstacle_m", result.smallest_obstacle_m);
+  take(given, "second_view_x_m", result.second_view_x_m);
+  refuse_bands_of_registered(camera, result);
   return margins;
 }
 

@@ -2,6 +2,10 @@
 #include "depthgrid/files/control_points.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <limits>
 
 #include "files/temporary_folder.hpp"
 
@@ -13,6 +17,7 @@ using test::TemporaryFolder;
 
 TEST(ControlPoints, WithAndWithoutHeaderAreTheSame) {
   for (const char* text : {"id,x,y,z\nhand,1,-2.5,3e-1\nelbow,0,0,+1\n", "hand,1,-2.5,3e-1\r\nelbow,0,0,+1\r\n",
+                           "\xEF\xBB\xBFid,x,y,z\r\nhand,1,-2.5,3e-1\r\nelbow,0,0,+1\r\n",  // of a spreadsheet
                            "# metres\n ID , X,Y ,Z # header\n\n\thand , 1,-2.5, 0.3 # the hand\nelbow,0,0,1"}) {
     const ControlPoints points = parse_control_points(text, "points.csv");
     ASSERT_EQ(points.fixed.size(), 2U) << text;
@@ -24,6 +29,20 @@ TEST(ControlPoints, WithAndWithoutHeaderAreTheSame) {
     EXPECT_EQ(points.at(0).size(), 2U);
     EXPECT_EQ(points.at(77).data(), points.fixed.data());
   }
+}
+
+TEST(ControlPoints, AHeaderMaySayMetres) {
+  const ControlPoints points =
+      parse_control_points("frame,id,X_m,y_m,z,radius_m,x2_m,y2_m,z2_m\n3,arm,1,2,3,0.1,4,5,6\n", "points.csv");
+  ASSERT_EQ(points.at(3).size(), 1U);
+  EXPECT_EQ(points.at(3)[0].capsule.a, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(points.at(3)[0].capsule.b, Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(points.at(3)[0].capsule.radius_m, 0.1);
+  EXPECT_EQ(parse_control_points("id,x_m,y_m,z_m\nhand,1,2,3\n", "points.csv").fixed.size(), 1U);
+  EXPECT_EQ(message_of([] { parse_control_points("id,x_mm,y_mm,z_mm\nhand,1,2,3\n", "points.csv"); }),
+            "points.csv: line 1, column 4: x is 'x_mm', must be a number in metres");
+  EXPECT_EQ(message_of([] { parse_control_points("id_m,x_m,y_m,z_m\nhand,1,2,3\n", "points.csv"); }),
+            "points.csv: line 1, column 6: x is 'x_m', must be a number in metres");
 }
 
 TEST(ControlPoints, MovingPointsAreThoseOfTheirFrame) {
@@ -93,6 +112,19 @@ const Broken kBroken[] = {
     {"NotANumber", "hand,1,2,nan\n", "points.csv: line 1, column 10: z is 'nan', must be finite"},
     {"Infinity", "hand,-inf,2,3\n", "points.csv: line 1, column 6: x is '-inf', must be finite"},
     {"TooLarge", "hand,1e999,2,3\n", "points.csv: line 1, column 6: x is '1e999', must be a number in metres"},
+    {"FartherThanCoordinatesGo", "hand,1,-1e308,3\n",
+     "points.csv: line 1, column 8: y is '-1e308', must be at most 1e5 m from 0"},
+    {"HugeRadius", "id,x,y,z,radius\nhand,1,2,3,1e300\n",
+     "points.csv: line 2, column 12: radius is '1e300', must be at most 1e5 m from 0"},
+    {"EscapeInId", "\x1b[2Jhand,1,2,3\n",
+     "points.csv: line 1, column 1: id '\\x1b[2Jhand' holds a character that cannot be printed, ids must not"},
+    {"NulInId", std::string("ha\0nd,1,2,3\n", 12),
+     "points.csv: line 1, column 1: id 'ha\\x00nd' holds a character that cannot be printed, ids must not"},
+    {"EscapeInNumber", "hand,\x1b]0;x,2,3\n",
+     "points.csv: line 1, column 6: x is '\\x1b]0;x', must be a number in metres"},
+    {"LongValue", "hand,1,2," + std::string(1000, '7') + "x\n",
+     "points.csv: line 1, column 10: z is '777777777777777777777777777777777777777777777777777777777777...', must be a "
+     "number in metres"},
     {"TwoSigns", "hand,+-1,2,3\n", "points.csv: line 1, column 6: x is '+-1', must be a number in metres"},
     {"ThreeValues", "1,2,3\n",
      "points.csv: line 1, column 1: 3 values, must be 4 (id,x,y,z) or 5 (frame,id,x,y,z); "
@@ -139,6 +171,52 @@ TEST(BrokenControlPointFile, AbsentFileIsNamed) {
             "points.csv: cannot be read: No such file or directory");
 }
 
+/// A hundred thousand ids of one frame: quadratic work would be 5e9 comparisons, minutes. The ratio of two sizes, in
+/// turns, is what is asserted.
+TEST(ControlPoints, AreNotQuadraticInTheirIds) {
+  const auto rows = [](int count) {
+    std::string text;
+    for (int k = 0; k < count; ++k) {
+      text += "a point with a long common beginning " + std::to_string(k) + ",1,2,3\n";
+    }
+    return text;
+  };
+  const std::string few = rows(4000);
+  const std::string many = rows(64000);
+  double ratio = std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < 5; ++turn) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(parse_control_points(few, "few").fixed.size(), 4000U);
+    const auto middle = std::chrono::steady_clock::now();
+    EXPECT_EQ(parse_control_points(many, "many").fixed.size(), 64000U);
+    const auto end = std::chrono::steady_clock::now();
+    ratio =
+        std::min(ratio, std::chrono::duration<double>(end - middle) / std::chrono::duration<double>(middle - begin));
+  }
+  EXPECT_LT(ratio, 64.0) << "16 times the rows; quadratic work would take 256 times as long";
+}
+
+TEST(ControlPoints, IdsOfOtherScriptsPass) {
+  EXPECT_EQ(parse_control_points("Ellenbogen links \xc3\xbc\xe6\x89\x8b,1,2,3\n", "points.csv").fixed.size(), 1U);
+}
+
+TEST(BrokenControlPointFile, PipesAndDevicesAreRefusedAtOnce) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "points.csv").c_str(), 0600), 0);
+  EXPECT_EQ(message_of([&] { load_control_points(folder / "points.csv"); }, folder.path()),
+            "points.csv: is a pipe, must be a regular file; copy what it gives into one");
+  EXPECT_EQ(message_of([] { load_control_points("/dev/zero"); }),
+            "/dev/zero: is a device, must be a regular file; copy what it gives into one");
+}
+
+TEST(BrokenControlPointFile, ALargeOneIsRefusedBeforeItIsRead) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("points.csv", "hand,1,2,3\n");
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40U);  // a hole, which takes no room on the disk
+  EXPECT_EQ(message_of([&] { load_control_points(file); }, folder.path()),
+            "points.csv: has 1099511627776 bytes, must have at most 67108864");
+}
+
 TEST(BrokenControlPointFile, FolderIsNamed) {
   const TemporaryFolder folder;
   EXPECT_EQ(message_of([&] { load_control_points(folder.path() / "."); }, folder.path()),
@@ -151,6 +229,8 @@ TEST(BrokenControlPoint, OfTheCommandLineNamesTheText) {
             "(x,y,z,radius,x2,y2,z2)");
   EXPECT_EQ(message_of([] { parse_control_point("1,2,3,-1", "p0"); }),
             "control point '1,2,3,-1': column 7: radius is '-1', must not be negative");
+  EXPECT_EQ(message_of([] { parse_control_point("1,2,3", "p\n"); }),
+            "control point '1,2,3': id 'p\\n' is empty or holds a character that cannot be printed");
   EXPECT_EQ(message_of([] { parse_control_point("1,2,nan", "p0"); }),
             "control point '1,2,nan': column 5: z is 'nan', must be finite");
 }

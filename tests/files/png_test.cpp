@@ -2,6 +2,7 @@
 #include "depthgrid/files/png.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <functional>
@@ -149,7 +150,7 @@ TEST_P(BrokenPng, IsRefusedWithItsReason) {
 
 const Broken kBroken[] = {
     {"Absent", [](const TemporaryFolder& f) { read_png16(f / "a.png"); },
-     "a.png: cannot be opened: No such file or directory"},
+     "a.png: cannot be read: No such file or directory"},
     {"Folder", [](const TemporaryFolder& f) { read_png16(f.path() / "."); },
      ".: is a folder, needs to be a 16-bit grayscale PNG file"},
     {"Empty", [](const TemporaryFolder& f) { read_bytes_as_png(f, ""); },
@@ -157,7 +158,12 @@ const Broken kBroken[] = {
     {"Text", [](const TemporaryFolder& f) { read_bytes_as_png(f, "depth depth depth"); },
      "a.png: is no PNG file: its first bytes are not PNG's signature"},
     {"Jpeg", [](const TemporaryFolder& f) { read_bytes_as_png(f, "\xFF\xD8\xFF\xE0 JFIF"); },
-     "a.png: is no PNG file: its first bytes are not PNG's signature"},
+     "a.png: is no PNG file but JPEG, depth images need to be 16-bit gray PNG: JPEG has lost the depths, record them "
+     "anew"},
+    {"Tiff", [](const TemporaryFolder& f) { read_bytes_as_png(f, std::string("II*\0\x08\0\0\0", 8)); },
+     "a.png: is no PNG file but TIFF, depth images need to be 16-bit gray PNG: write the TIFF files' depths in units "
+     "of "
+     "metres_per_unit (millimetres: 0.001) as such, with OpenCV's imwrite, say"},
     {"CutInSignature", [](const TemporaryFolder& f) { read_bytes_as_png(f, valid_png(f).substr(0, 5)); },
      "a.png: broken PNG: the file ends too early (truncated)"},
     {"CutInHeader", [](const TemporaryFolder& f) { read_bytes_as_png(f, valid_png(f).substr(0, 20)); },
@@ -199,6 +205,31 @@ const Broken kBroken[] = {
        read_bytes_as_png(f, with_header_field(png, 16, std::string_view("\x7F\xFF\xFF\xFF\x00\x00\x00\x01", 8)));
      },
      "a.png: is 2147483647 x 1 pixels, a side must be at most 16384"},
+    {"MorePixelsThanMemory",  // 261 kB would become half a gigabyte
+     [](const TemporaryFolder& f) {
+       const std::string png = valid_png(f);
+       read_bytes_as_png(f, with_header_field(png, 16, std::string_view("\x00\x00\x40\x00\x00\x00\x40\x00", 8)) +
+                                std::string(300000, '\0'));
+     },
+     "a.png: is 16384 x 16384 = 268435456 pixels, must have at most 16777216"},
+    {"Pipe",
+     [](const TemporaryFolder& f) {
+       ASSERT_EQ(::mkfifo((f / "a.png").c_str(), 0600), 0);
+       read_png16(f / "a.png");
+     },
+     "a.png: is a pipe, must be a regular file; copy what it gives into one"},
+    {"Device", [](const TemporaryFolder&) { read_png16("/dev/zero"); },
+     "/dev/zero: is a device, must be a regular file; copy what it gives into one"},
+    {"LfsPointer",
+     [](const TemporaryFolder& f) { read_bytes_as_png(f, "version https://git-lfs.github.com/spec/v1\n"); },
+     "a.png: is no PNG file but text, probably a Git LFS pointer: run `git lfs pull` in its repository"},
+    {"OtherSizeThanTheCamera",
+     [](const TemporaryFolder& f) {
+       Gray16Image image;
+       (void)f.write("a.png", valid_png(f));
+       read_png16(f / "a.png", PinholeCamera{640, 480, 500, 500, 320, 240}, "left", image);
+     },
+     "a.png: is 256 x 256 pixels, the calibration of camera 'left' is for 640 x 480"},
     {"ZeroWidth",
      [](const TemporaryFolder& f) {
        const std::string png = valid_png(f);
@@ -209,9 +240,9 @@ const Broken kBroken[] = {
      [](const TemporaryFolder& f) {
        const std::string png = valid_png(f);
        read_bytes_as_png(
-           f, with_header_field(png, 16, std::string_view("\x00\x00\x40\x00\x00\x00\x40\x00", 8)).substr(0, 200));
+           f, with_header_field(png, 16, std::string_view("\x00\x00\x08\x00\x00\x00\x08\x00", 8)).substr(0, 200));
      },
-     "a.png: broken PNG: 200 bytes cannot hold the 16384 x 16384 pixels that its header promises (truncated)"},
+     "a.png: broken PNG: 200 bytes cannot hold the 2048 x 2048 pixels that its header promises (truncated)"},
     {"WriteOfTooFewValues",
      [](const TemporaryFolder& f) { write_png_rgb8(f / "a.png", 2, 2, std::vector<std::uint8_t>(4)); },
      "a.png: cannot be written: 4 values given, 2 x 2 pixels need 12"},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "files/rig_text.hpp"
@@ -138,6 +139,32 @@ TEST(Recording, RemovesDistortionWithoutBlending) {
   EXPECT_EQ(depth_m(recording, frame, 1, 4, 3), 0.5F);
 }
 
+/// The coefficients of an Azure Kinect in wide mode, rounded: a ray 55 degrees off the axis is in the recorded image,
+/// so it has to be in the one that is handed out.
+TEST(Recording, KeepsTheViewOfAWideLens) {
+  const TemporaryFolder folder;
+  static_cast<void>(
+      folder.write("rig.json", R"({"cameras": [{"id": "wide", "width": 128, "height": 128, "fx": 63, "fy": 63,
+    "cx": 63.7, "cy": 64, "metres_per_unit": 0.001, "depth_files": "d.png",
+    "distortion": {"model": "rational_polynomial", "coeffs": [0.9, 0.12, 0.0004, -0.0003, 0.004, 1.23, 0.33, 0.018]},
+    "T_world_cam": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]})"));
+  write_png_gray16(folder / "d.png", 128, 128, std::vector<std::uint16_t>(std::size_t{128} * 128, 2000));
+  Recording recording(folder.path());
+  const PinholeCamera& camera = recording.rig().cameras[0].intrinsics;
+  EXPECT_EQ(camera.fx_px, 63.0);
+  const Frame frame = recording.read(0)[0];
+  ASSERT_EQ(frame.depth.width_px, camera.width_px);
+  for (const double x : {-1.43, 1.43}) {  // tan(55 degrees)
+    const int u = static_cast<int>(x * camera.fx_px + camera.cx_px);
+    ASSERT_TRUE(camera.contains(u, static_cast<int>(camera.cy_px)));
+    EXPECT_EQ(depth_m(recording, frame, 0, u, static_cast<int>(camera.cy_px)), 2.0F);
+  }
+  ASSERT_NE(recording.distorted(0), nullptr);
+  EXPECT_EQ(recording.distorted(0)->width_px(), 128);
+  const std::vector<bool> read = recording.pixels_read(0);
+  EXPECT_LT(std::count(read.begin(), read.end(), false), 128 * 128 / 10);
+}
+
 struct Broken {
   const char* name;
   std::function<void(const TemporaryFolder&)> action;  ///< gets a folder with the small recording in it
@@ -170,7 +197,7 @@ const Broken kBroken[] = {
     {"TextAsRig", [](const TemporaryFolder& f) { Recording(f.write("notes.txt", "day one\n")); },
      "notes.txt: line 1, column 1: JSON syntax: Invalid value. Near: day one"},
     {"ImageNotRecorded", [](const TemporaryFolder& f) { Recording(f / "rig.json").read(2); },
-     "left/depth_005.png: cannot be opened: No such file or directory"},
+     "left/depth_005.png: cannot be read: No such file or directory"},
     {"ImageOfOtherSize",
      [](const TemporaryFolder& f) {
        write_image(f / "right/004.png", 1, 9);
@@ -203,7 +230,7 @@ const Broken kBroken[] = {
      [](const TemporaryFolder& f) {
        Recording(f.write("rig.json", small_rig_with("\"depth_files\": \"right/%03d.png\", ", "")));
      },
-     "rig.json: camera 'right' has no depth_files, so there are no images to read"},
+     "rig.json: camera 'right' has no depth_files and no depth_list, so there are no images to read"},
     {"NearBeyondFar",
      [](const TemporaryFolder& f) { Recording(f / "rig.json", {.camera_ids = {}, .near_m = 5.0, .far_m = {}}); },
      "rig.json: camera 'right': far is 4 m, must be greater than near (5 m)"},

@@ -26,6 +26,11 @@ TEST_P(BrokenRig, IsRefusedWithItsReason) {
   EXPECT_EQ(message_of([] { parse_rig(GetParam().text, "rig.json"); }), GetParam().message);
 }
 
+#define FY_HINT                                                                                                      \
+  "; y up or an image stored bottom-up? Write fy without its sign. Where y is up in camera and world (ICL-NUIM), "   \
+  "change the signs of the second row and of the second column of T_world_cam and of y in all points; where images " \
+  "are stored bottom-up, turn the rows round and write cy = height - 1 - cy"
+
 const Broken kSyntax[] = {
     {"Empty", "", "rig.json: line 1, column 1: JSON syntax: The document is empty."},
     {"NoJson", "cameras: 3\n", "rig.json: line 1, column 1: JSON syntax: Invalid value. Near: cameras: 3"},
@@ -45,6 +50,9 @@ const Broken kSyntax[] = {
      "rig.json: line 2, column 14: JSON syntax: Invalid encoding in string. Near: \"name\": \"sm?\","},
     {"TwoDocuments", small_rig() + "{}",
      "rig.json: line 17, column 1: JSON syntax: The document root must not be followed by other values. Near: {}"},
+    {"FirstHalfOfASurrogatePair", small_rig_with("small", "sm\\ud800"),
+     "rig.json: line 2, column 14: JSON syntax: The surrogate pair in string is invalid. Near: \"name\": "
+     "\"sm\\ud800\","},
     {"NestedDeeply", std::string(100000, '['),
      "rig.json: line 1, column 33: JSON syntax: Nested deeper than 32 levels. Near: "
      "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["},
@@ -59,7 +67,11 @@ const Broken kSchema[] = {
     {"MisspeltKey", small_rig_with("\"height\"", "\"heigth\""),
      "rig.json: /cameras/0: unknown key \"heigth\", did you mean 'height'?"},
     {"UnknownKey", small_rig_with("\"first\": 3", "\"exposure\": 3"),
-     "rig.json: /frames: unknown key \"exposure\", known keys are first, count, simultaneous, pattern, rate_hz, note"},
+     "rig.json: /frames: unknown key \"exposure\", known keys are first, count, simultaneous, tolerance_s, pose_gap_s, "
+     "shared_clock, pattern, rate_hz, note"},
+    {"HalfOfASurrogatePairInAKey", small_rig_with("\"first\": 3", "\"first\\udc00\": 3"),
+     "rig.json: /frames: unknown key \"first\\xed\\xb0\\x80\", known keys are first, count, simultaneous, tolerance_s, "
+     "pose_gap_s, shared_clock, pattern, rate_hz, note"},
     {"UnknownKeyAtTheTop", small_rig_with("\"name\"", "\"T_world_floor\""),
      "rig.json: top level: unknown key \"T_world_floor\", known keys are name, note, convention, world_frame, "
      "suggested_rigs, T_floor_world, depth, frames, cameras"},
@@ -78,14 +90,20 @@ const Broken kSchema[] = {
     {"WidthAsText", small_rig_with("\"width\": 8", "\"width\": \"8\""),
      "rig.json: /cameras/0/width: value \"8\" breaks the rule \"type\": \"integer\""},
     {"ZeroFocalLength", small_rig_with("\"fx\": 10", "\"fx\": 0"),
-     "rig.json: /cameras/0/fx: value 0 breaks the rule \"minimum\": 0 (exclusive)"},
+     "rig.json: /cameras/0/fx: value 0 breaks the rule \"minimum\": 0 (exclusive)" FY_HINT},
     {"ZeroScale", small_rig_with("\"metres_per_unit\": 0.001", "\"metres_per_unit\": 0"),
-     "rig.json: /depth/metres_per_unit: value 0 breaks the rule \"minimum\": 1e-9"},
+     "rig.json: /depth/metres_per_unit: value 0 breaks the rule \"minimum\": 0.000001; metres of one unit: did you "
+     "mean "
+     "0.001 (images in millimetres)?"},
     {"InvalidValueTooLarge", small_rig_with("2047", "65536"),
      "rig.json: /depth/invalid_values/1: value 65536 breaks the rule \"maximum\": 65535"},
-    {"UnknownDistortion", small_rig_with("plumb_bob", "fisheye"),
-     "rig.json: /cameras/1/distortion/model: value \"fisheye\" breaks the rule \"enum\": "
-     "[\"none\",\"brown_conrady\",\"plumb_bob\",\"rational\"]"},
+    {"UnknownDistortion", small_rig_with("plumb_bob", "cubemap"),
+     "rig.json: /cameras/1/distortion/model: value \"cubemap\" breaks the rule \"enum\": "
+     "[\"none\",\"brown_conrady\",\"plumb_bob\",\"radtan\",\"rational\",\"rat...; known are none, plumb_bob "
+     "(brown_conrady, "
+     "radtan), rational (rational_polynomial) and equidistant (fisheye, kannala_brandt4); RealSense's "
+     "inverse_brown_conrady "
+     "with five zeros is none; of other models rectify the images first"},
     {"ThreeRows", small_rig_with("[1, 0, 0, 0.5], ", ""),
      "rig.json: /cameras/0/T_world_cam: value [[0,1,0,0],[0,0,1,0],[0,0,0,1]] breaks the rule \"minItems\": 4"},
     {"ShortRow", small_rig_with("[1, 0, 0, 0.5]", "[1, 0, 0]"),
@@ -121,12 +139,21 @@ const Broken kMeaning[] = {
      "rig.json: /cameras/1/id: 'left' is also the id of /cameras/0, ids must be distinct"},
     {"IdOfTwoLines", small_rig_with("\"right\"", "\"ri\\nght\""),
      "rig.json: /cameras/1/id: \"ri\\nght\" holds a control character, names must not"},
+    {"HalfOfASurrogatePairInAnId", small_rig_with("\"right\"", "\"ri\\udc00ght\""),
+     "rig.json: /cameras/1/id: \"ri\\xed\\xb0\\x80ght\" holds a control character, names must not"},
+    {"HalfOfASurrogatePairInAPath", small_rig_with("left/depth", "left\\udfffdepth"),
+     "rig.json: /cameras/0/depth_files: \"left\\xed\\xbf\\xbfdepth_%03d.png\" holds a control character, names must "
+     "not"},
     {"NoScale", small_rig_with("\"metres_per_unit\": 0.001, ", ""),
      "rig.json: /cameras/0: metres_per_unit is given neither here nor in /depth, depth values need a scale"},
     {"SkewRotation", small_rig_with("[1, 0, 0, 0.5]", "[1, 0.01, 0, 0.5]"),
-     "rig.json: /cameras/0/T_world_cam: matrix: rotation deviates from orthonormal by 0.01, must be at most 0.001"},
+     "rig.json: /cameras/0/T_world_cam: matrix: rotation deviates from orthonormal by 0.01, must be at most 0.001; "
+     "with too few digits, or not a rotation?"},
     {"Reflection", small_rig_with("[1, 0, 0, 0.5]", "[-1, 0, 0, 0.5]"),
-     "rig.json: /cameras/0/T_world_cam: matrix: rotation has determinant -1, must be +1 (right-handed frames)"},
+     "rig.json: /cameras/0/T_world_cam: matrix: rotation has determinant -1, must be +1 (right-handed frames): one "
+     "axis is turned round; where y is up in camera and world (ICL-NUIM), change the signs of the second row and of "
+     "the "
+     "second column, and of y in all points"},
     {"Transposed",
      small_rig_with("[[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]",
                     "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0.5, 0, 0, 1]]"),
@@ -148,16 +175,14 @@ const Broken kMeaning[] = {
     {"ThreeCoefficients", small_rig_with("[0, 0, 0, 0, 0]", "[0.1, 0, 0]"),
      "rig.json: /cameras/1/distortion: distortion plumb_bob: 3 coefficients given, must be 4 or 5 (k1 k2 p1 p2 k3)"},
     {"CoefficientsWithoutModel", small_rig_with("\"plumb_bob\", \"coeffs\": [0,", "\"none\", \"coeffs\": [0.1,"),
-     "rig.json: /cameras/1/distortion: distortion none: coefficient 0 is 0.1, must be 0; is the model plumb_bob or "
-     "rational?"},
+     "rig.json: /cameras/1/distortion: distortion none: coefficient 0 is 0.1, must be 0; is the model plumb_bob, "
+     "rational or equidistant?"},
     {"NoConversion", small_rig_with("depth_%03d", "depth"),
      "rig.json: /cameras/0/depth_files: 'left/depth.png' has no %d or %0Nd, but /frames/count is 10"},
     {"TextConversion", small_rig_with("depth_%03d", "depth_%s"),
-     "rig.json: /cameras/0/depth_files: 'left/depth_%s.png' has a '%' that does not start %d or %0Nd, with one digit "
-     "for N"},
+     "rig.json: /cameras/0/depth_files: 'left/depth_%s.png' has a '%' that does not start %d, %0Nd or %f"},
     {"WideConversion", small_rig_with("depth_%03d", "depth_%0999d"),
-     "rig.json: /cameras/0/depth_files: 'left/depth_%0999d.png' has a '%' that does not start %d or %0Nd, with one "
-     "digit for N"},
+     "rig.json: /cameras/0/depth_files: 'left/depth_%0999d.png' has a '%' that does not start %d, %0Nd or %f"},
     {"TwoConversions", small_rig_with("left/depth_%03d", "%03d/depth_%03d"),
      "rig.json: /cameras/0/depth_files: '%03d/depth_%03d.png' has two conversions, only one frame number can be put "
      "in"},
@@ -170,11 +195,71 @@ const Broken kMeaning[] = {
      "rig.json: /cameras/0/depth_files: 'left/../../depth_%03d.png' has a part '..', must stay in the rig file's "
      "folder"},
     {"NulInPath", small_rig_with("left/depth", "left\\u0000depth"),
-     "rig.json: /cameras/0/depth_files: \"left\\u0000depth_%03d.png\" holds a control character, names must not"},
+     "rig.json: /cameras/0/depth_files: \"left\\x00depth_%03d.png\" holds a control character, names must not"},
     {"PatternWithText", small_rig_with("\"pattern\": \"%03d\"", "\"pattern\": \"depth_%03d\""),
      "rig.json: /frames/pattern: 'depth_%03d' is not a conversion %d or %0Nd and nothing else"},
 };
 INSTANTIATE_TEST_SUITE_P(Meaning, BrokenRig, ::testing::ValuesIn(kMeaning),
+                         [](const auto& broken) { return broken.param.name; });
+
+/// Units that were mistaken: each is refused, and the message says what was probably meant.
+const Broken kImplausible[] = {
+    {"UnitsOfOneMetre", small_rig_with("\"metres_per_unit\": 0.001", "\"metres_per_unit\": 1000"),
+     "rig.json: /depth/metres_per_unit: value 1000 breaks the rule \"maximum\": 0.01; metres of one unit: did you mean "
+     "0.001 (images in millimetres)? Most tools name the inverse, units of one metre (depth_scale 1000, DepthMapFactor "
+     "5000): write 1/1000 = 0.001, 1/5000 = 0.0002"},
+    {"UnitsOfACamera", small_rig_with("\"metres_per_unit\": 0.0005", "\"metres_per_unit\": 1"),
+     "rig.json: /cameras/1/metres_per_unit: value 1 breaks the rule \"maximum\": 0.01; metres of one unit: did you "
+     "mean "
+     "0.001 (images in millimetres)? Most tools name the inverse, units of one metre (depth_scale 1000, DepthMapFactor "
+     "5000): write 1/1000 = 0.001, 1/5000 = 0.0002"},
+    {"NegativeFy", small_rig_with("\"fy\": 11", "\"fy\": -480"),
+     "rig.json: /cameras/0/fy: value -480 breaks the rule \"minimum\": 0 (exclusive)" FY_HINT},
+    {"FxDividedByTheWidth", small_rig_with("\"fx\": 10", "\"fx\": 0.15"),
+     "rig.json: /cameras/0: intrinsics: fx is 0.15 px in an image of width 8 px, a field of view of 175.7048291 "
+     "degrees, "
+     "must be 2 to 175; is it in millimetres or metres? needed are pixels, usually 0.4 to 2 times the width"},
+    {"PrincipalPointOfAnotherImage", small_rig_with("\"cx\": 3.5", "\"cx\": 35"),
+     "rig.json: /cameras/0: intrinsics: cx is 35 px in an image of width 8 px, must be within one width of the image; "
+     "is "
+     "the calibration for another image size? (half the width would be 3.5)"},
+    {"PoseInMillimetres", small_rig_with("[1, 0, 0, 0.5]", "[1, 0, 0, 500]"),
+     "rig.json: /cameras/0/T_world_cam: matrix: translation is (500, 0, 0) m, no coordinate may be beyond 100 m; in "
+     "millimetres? did you mean (0.5, 0, 0)? if not, move the world's origin near the cameras"},
+    {"BaselineInMillimetres", small_rig_with("[1, 0, 0, 0.5]", "[1, 0, 0, 60]"),
+     "rig.json: /cameras: camera 0 stands 62.03224968 m from the nearest other one (1), must be at most 50 m; are the "
+     "poses in millimetres? did you mean 0.06203224968 m?"},
+    {"NearInMillimetres", small_rig_with("\"near_m\": 0.25", "\"near_m\": 250"),
+     "rig.json: /cameras/1/near_m: value 250 breaks the rule \"maximum\": 10; in millimetres? lengths are metres"},
+    {"FarInMillimetres", small_rig_with("\"far_m\": 4", "\"far_m\": 4000"),
+     "rig.json: /cameras/1/far_m: value 4000 breaks the rule \"maximum\": 500; in millimetres? lengths are metres; "
+     "null: "
+     "no limit"},
+    {"MarginInMillimetres",
+     small_rig_with("\"id\": \"left\",", "\"id\": \"left\", \"margins\": {\"translation_m\": 5},"),
+     "rig.json: /cameras/0/margins/translation_m: value 5 breaks the rule \"maximum\": 1; in millimetres? lengths are "
+     "metres"},
+    {"MarginInDegrees", small_rig_with("\"id\": \"left\",", "\"id\": \"left\", \"margins\": {\"rotation_rad\": 1},"),
+     "rig.json: /cameras/0/margins/rotation_rad: value 1 breaks the rule \"maximum\": 0.5; in degrees? angles are "
+     "radians, 1 degree is 0.01745"},
+    {"ExposureInMilliseconds",
+     small_rig_with("\"id\": \"left\",", "\"id\": \"left\", \"margins\": {\"half_exposure_s\": 16},"),
+     "rig.json: /cameras/0/margins/half_exposure_s: value 16 breaks the rule \"maximum\": 1; in milliseconds? times "
+     "are "
+     "seconds"},
+    {"AbsurdDistortion", small_rig_with("[0, 0, 0, 0, 0]", "[0, 0, 3, 0, 0]"),
+     "rig.json: /cameras/1: intrinsics: distortion: p1, p2 is 3, 0, must be at most 0.5 to either side; the order is "
+     "k1 "
+     "k2 p1 p2 k3 ..., are they k3 and k4?"},
+    {"ScaledRotation",
+     small_rig_with("[[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0]", "[[2, 0, 0, 0.5], [0, 2, 0, 0], [0, 0, 2, 0]"),
+     "rig.json: /cameras/0/T_world_cam: matrix: rotation deviates from orthonormal by 3, must be at most 0.001; it is "
+     "scaled by 2: divide its nine numbers by that"},
+    {"Utf16", std::string("\xFF\xFE{\0}\0", 6),
+     "rig.json: is UTF-16 or UTF-32 text, must be UTF-8 or ASCII; save it as UTF-8 (PowerShell: Out-File -Encoding "
+     "utf8)"},
+};
+INSTANTIATE_TEST_SUITE_P(Implausible, BrokenRig, ::testing::ValuesIn(kImplausible),
                          [](const auto& broken) { return broken.param.name; });
 
 TEST(BrokenRigFile, AbsentFileIsNamed) {

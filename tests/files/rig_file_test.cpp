@@ -11,6 +11,7 @@
 #include "files/rig_text.hpp"
 #include "files/temporary_folder.hpp"
 #include "support/random_run.hpp"
+#include "support/thrown_message.hpp"
 
 namespace depthgrid::files {
 namespace {
@@ -100,7 +101,8 @@ TEST(RigFile, OwnNumbersStandInPlaceOfTheSensors) {
       small_rig_with("\"id\": \"left\",",
                      R"("id": "left", "sensor": "kinect_v1", "near_m": 0, "far_m": null, "clamp_beyond_far": false,
              "margins": {"noise_constant_m": 0.01, "noise_linear": 0.02, "noise_quadratic_per_m": 0.03, "lateral_px": 0,
-             "translation_m": 0.04, "rotation_rad": 0.05, "half_exposure_s": 0.06, "time_uncertainty_s": 0.07, "note": "a"},)"),
+             "translation_m": 0.04, "rotation_rad": 0.05, "half_exposure_s": 0.06, "time_uncertainty_s": 0.07,
+             "smallest_obstacle_m": 0.08, "note": "a"},)"),
       "rig");
   const RigCamera& left = file.rig.cameras[0];
   EXPECT_EQ(left.margins->sensor.constant_m, 0.01);
@@ -111,9 +113,26 @@ TEST(RigFile, OwnNumbersStandInPlaceOfTheSensors) {
   EXPECT_EQ(left.margins->rotation_rad, 0.05);
   EXPECT_EQ(left.margins->half_exposure_s, 0.06);
   EXPECT_EQ(left.margins->time_uncertainty_s, 0.07);
+  EXPECT_EQ(left.margins->smallest_obstacle_m, 0.08);
   EXPECT_EQ(left.rule.near_m, 0.0);
   EXPECT_EQ(left.rule.far_m, std::numeric_limits<double>::infinity());
   EXPECT_FALSE(left.rule.clamp_beyond_far);
+}
+
+TEST(RigFile, TheSecondViewIsTheSensorsWhereImagesAreNotRegistered) {
+  const auto second_view_x_m = [](const std::string& more) {
+    const std::string text =
+        small_rig_with("\"id\": \"left\",", "\"id\": \"left\", \"sensor\": \"kinect_v1\", " + more);
+    return parse_rig(text, "rig").rig.cameras[0].margins->second_view_x_m;
+  };
+  EXPECT_EQ(second_view_x_m(""), 0.0) << "nobody says how the images were made";
+  EXPECT_EQ(second_view_x_m("\"registered\": true, "), 0.0);
+  EXPECT_EQ(second_view_x_m("\"registered\": false, "), 0.075);
+  EXPECT_EQ(second_view_x_m(R"("registered": false, "margins": {"second_view_x_m": -0.06}, )"), -0.06);
+  EXPECT_NE(test::thrown_message([&] {
+              (void)second_view_x_m(R"("registered": true, "margins": {"second_view_x_m": 0.075}, )");
+            }).find("/cameras/0/margins: second_view_x_m is 0.075 m and \"registered\" is true"),
+            std::string::npos);
 }
 
 TEST(RigFile, AnOwnFarEndIsNotClampedBecauseTheSensorsIs) {
@@ -174,6 +193,9 @@ void expect_same(const CameraMargins& a, const CameraMargins& b) {
   EXPECT_EQ(a.rotation_rad, b.rotation_rad);
   EXPECT_EQ(a.half_exposure_s, b.half_exposure_s);
   EXPECT_EQ(a.time_uncertainty_s, b.time_uncertainty_s);
+  EXPECT_EQ(a.second_view_x_m, b.second_view_x_m);
+  EXPECT_EQ(std::isnan(a.smallest_obstacle_m), std::isnan(b.smallest_obstacle_m));
+  EXPECT_TRUE(std::isnan(a.smallest_obstacle_m) || a.smallest_obstacle_m == b.smallest_obstacle_m);
 }
 
 void expect_same(const RigFile& a, const RigFile& b) {
@@ -238,8 +260,12 @@ RigFile random_rig(unsigned seed) {
     if (random() % 2 == 0) {  // whatever the sensor says of itself, the rig's own values are the ones that come back
       camera.rule = random() % 2 == 0 ? MeasurementRule{} : camera.rule;
       const auto part = [&] { return std::abs(number(random)); };
-      camera.margins =
-          CameraMargins{{part(), part(), part(), static_cast<int>(random() % 17)}, part(), part(), part(), part()};
+      camera.margins = CameraMargins{
+          {part(), part(), part(), static_cast<int>(random() % 17)}, part(), 0.5 * part(), part(), part()};
+      if (random() % 2 == 0) {
+        camera.margins->smallest_obstacle_m = random() % 3 == 0 ? 0 : 0.5 * part();
+        camera.margins->second_view_x_m = number(random);
+      }
       const auto models = sensor_models();
       camera.sensor = random() % 2 == 0 ? models[random() % models.size()].name : std::string_view();
     }
@@ -248,6 +274,36 @@ RigFile random_rig(unsigned seed) {
     file.depth_files.push_back("c" + std::to_string(k) + "/%05d.png");
   }
   return file;
+}
+
+TEST(RigFile, AByteOrderMarkAndWindowsLinesAreIgnored) {
+  std::string windows = "\xEF\xBB\xBF";
+  for (const char c : small_rig()) {
+    windows += c == '\n' ? "\r\n" : std::string(1, c);
+  }
+  expect_same(parse_rig(windows, "windows"), parse_rig(small_rig(), "unix"));
+}
+
+TEST(RigFile, DistortionModelsGoByTheNamesThatToolsGiveThem) {
+  const auto model = [](const std::string& name, const std::string& coefficients) {
+    return parse_rig(small_rig_with("\"plumb_bob\", \"coeffs\": [0, 0, 0, 0, 0]",
+                                    "\"" + name + "\", \"coeffs\": " + coefficients),
+                     "rig")
+        .rig.cameras[1]
+        .distortion;
+  };
+  const std::string eight = "[0.1, 0.02, 0.001, 0.002, 0.01, 0.1, 0.02, 0.01]";  // ROS's name, and ours
+  EXPECT_EQ(model("rational_polynomial", eight).model, Distortion::Model::rational);
+  EXPECT_EQ(model("rational_polynomial", eight).coefficients, model("rational", eight).coefficients);
+  for (const char* name : {"equidistant", "fisheye", "kannala_brandt4"}) {
+    const Distortion lens = model(name, "[0.01, -0.02, 0.003, -0.0004]");
+    EXPECT_EQ(lens.model, Distortion::Model::equidistant);
+    EXPECT_EQ(lens.coefficients, (std::array<double, 8>{0.01, -0.02, 0.003, -0.0004, 0, 0, 0, 0}));
+  }
+  EXPECT_EQ(model("radtan", "[0.1, 0.02, 0.001, 0.002]").model, Distortion::Model::plumb_bob);
+  RigFile file = parse_rig(small_rig(), "rig");
+  file.rig.cameras[0].distortion = make_distortion(Distortion::Model::equidistant, std::array{0.01, 0.0, 0.0, -0.001});
+  expect_same(file, parse_rig(to_json(file), "written"));
 }
 
 TEST(RigFile, WritingAndLoadingGivesTheSameRig) {

@@ -1,0 +1,83 @@
+#include "depthgrid/files/foreign_recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/core/whole_file.hpp"
+
+namespace depthgrid::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Container {
+  std::string_view extension;
+  std::string_view first_bytes;  ///< empty: told by the name alone
+  const char* what;
+  const char* tool;
+};
+
+constexpr const char* kRosTool = "the Python package rosbags reads it";
+constexpr std::array<Container, 6> kContainers{{
+    {".bag", "#ROSBAG V", "a ROS 1 bag, as rosbag and RealSense cameras write it", kRosTool},
+    {".mcap", "\x89MCAP0\r\n", "an MCAP file, as ROS 2 writes it", kRosTool},
+    {".db3", "", "a ROS 2 bag", kRosTool},
+    {".oni", "NI10", "an OpenNI recording of a Kinect or Xtion", "OpenNI 2 reads it"},
+    {".mkv", "", "a Matroska recording, as Azure Kinects write it", "the Azure Kinect SDK reads it"},
+    {".svo", "", "a recording of a ZED camera", "the ZED SDK reads it"},
+}};
+
+[[noreturn]] void refuse(const fs::path& path, const Container& container) {
+  fail(path.string(), ": is ", container.what,
+       ", which depthgrid does not read: write its depth images as 16-bit PNG "
+       "files into a folder (",
+       container.tool,
+       ") and a rig.json beside them; docs/rig-file.md, \"From a bag to a "
+       "folder\", says how");
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// Nothing where it cannot be read: whoever reads it says why.
+std::string first_bytes(const fs::path& file) {
+  try {
+    std::array<char, 16> bytes{};
+    const InputStream stream = open_regular_file(file);
+    return {bytes.data(), std::fread(bytes.data(), 1, bytes.size(), stream.get())};
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+void refuse_foreign_recording(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    if (fs::exists(path / "metadata.yaml", ignored) && !fs::exists(path / "rig.json", ignored)) {
+      refuse(path, kContainers[2]);
+    }
+    return;
+  }
+  const std::string extension = lower_extension(path);
+  const std::string begin = first_bytes(path);
+  for (const Container& container : kContainers) {
+    const bool is_such = !container.first_bytes.empty() && begin.rfind(container.first_bytes, 0) == 0;
+    if (is_such || (extension == container.extension && !begin.empty())) {
+      refuse(path, container);
+    }
+  }
+}
+
+}  // namespace depthgrid::files

@@ -1,0 +1,13 @@
+// Recordings in containers that depthgrid does not read: what they are, and what to do. Internal.
+#pragma once
+
+#include <filesystem>
+
+namespace depthgrid::files {
+
+/// Throws Error that says what the file is and how it becomes a folder of PNG files, where its name or its first bytes
+/// are those of a recording of another program: .bag, .mcap, .db3, .oni, .mkv, .svo; and for the folder of a ROS 2 bag
+/// without a rig.json.
+void refuse_foreign_recording(const std::filesystem::path& path);
+
+}  // namespace depthgrid::files
