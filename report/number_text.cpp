@@ -31,6 +31,8 @@ std::string micro_text(double value) {
 
 std::string micro_text_down(double value) { return micro_text(std::floor(value * 1e6) / 1e6); }
 
+std::string micro_text_up(double value) { return micro_text(std::ceil(value * 1e6) / 1e6); }
+
 std::string fixed(double value, int digits) {
   if (!std::isfinite(value)) {
     return "-";

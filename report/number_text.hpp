@@ -16,6 +16,9 @@ std::string micro_text(double value);
 /// Six decimals, rounded towards minus infinity, so that a lower bound stays one. NaN gives an empty text.
 std::string micro_text_down(double value);
 
+/// The same towards plus infinity, for an upper bound.
+std::string micro_text_up(double value);
+
 /// With so many digits after the point; "-" when not finite.
 [[nodiscard]] std::string fixed(double value, int digits = 0);
 /// A share as "12.3 %".
