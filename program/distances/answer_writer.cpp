@@ -75,11 +75,15 @@ struct AnswerWriter::Row {
   bool stale = false;
   bool budget = false;
   std::string known_to_m;
+  std::string blind_m;
   Texts hybrid_direction;
   std::int64_t obstacle_points = 0;
   std::string radius_m;
   Texts end;
   Texts on_axis;
+  std::string reason;
+  std::string hidden_s;
+  Texts from;
 };
 
 AnswerWriter::AnswerWriter(AnswerFormat format, const Rig& rig, Pose T_output_world, const AnswerColumns& columns)
@@ -91,14 +95,15 @@ std::string AnswerWriter::header() const {
   }
   return std::string(
              "frame,time_s,point,x_m,y_m,z_m,distance_m,state,camera,nearest_x_m,nearest_y_m,nearest_z_m,"
-             "direction_x,direction_y,direction_z,stale,budget,known_to_m") +
+             "direction_x,direction_y,direction_z,stale,budget,known_to_m,blind_m") +
          (columns_.hybrid_direction ? ",hybrid_x,hybrid_y,hybrid_z" : "") +
          (columns_.obstacle_points ? ",obstacle_points" : "") +
-         (columns_.shapes ? ",radius_m,end_x_m,end_y_m,end_z_m,on_axis_x_m,on_axis_y_m,on_axis_z_m\n" : "\n");
+         (columns_.shapes ? ",radius_m,end_x_m,end_y_m,end_z_m,on_axis_x_m,on_axis_y_m,on_axis_z_m" : "") +
+         (columns_.reasons ? ",reason,hidden_s,from_x_m,from_y_m,from_z_m\n" : "\n");
 }
 
 std::string AnswerWriter::line(int frame, std::optional<double> time_s, const files::ControlPoint& point,
-                               const Answer& answer) const {
+                               const Answer& answer, const AnswerReason& reason) const {
   const Proximity& nearest = answer.nearest;
   Row row;
   row.frame = frame;
@@ -113,11 +118,15 @@ std::string AnswerWriter::line(int frame, std::optional<double> time_s, const fi
   row.stale = nearest.stale;
   row.budget = nearest.budget;
   row.known_to_m = report::micro_text_down(nearest.known_to_m);
+  row.blind_m = report::micro_text_up(answer.blind_m);
   row.hybrid_direction = Texts::of(T_output_world_.linear() * answer.hybrid_direction_world, report::micro_text);
   row.obstacle_points = answer.obstacle_points;
   row.radius_m = report::exact_text(point.capsule.radius_m);
   row.end = point.has_end ? Texts::of(point.capsule.b, report::exact_text) : Texts{};
   row.on_axis = Texts::of(T_output_world_ * answer.on_axis_world, report::micro_text);
+  row.reason = reason.text;
+  row.hidden_s = reason.hidden_s ? report::micro_text(*reason.hidden_s) : std::string();
+  row.from = Texts::of(T_output_world_ * reason.from_world, report::micro_text);
   return format_ == AnswerFormat::csv ? csv(row) : json(row);
 }
 
@@ -126,7 +135,7 @@ std::string AnswerWriter::csv(const Row& row) const {
   std::string text = std::to_string(row.frame) + ',' + row.time_s + ',' + cell(row.point) + ',' + row.position.csv() +
                      ',' + row.distance_m + ',' + std::string(row.state) + ',' + cell(row.camera) + ',' +
                      row.nearest.csv() + ',' + row.direction.csv() + ',' + yes(row.stale) + ',' + yes(row.budget) +
-                     ',' + row.known_to_m;
+                     ',' + row.known_to_m + ',' + row.blind_m;
   if (columns_.hybrid_direction) {
     text += ',' + row.hybrid_direction.csv();
   }
@@ -135,6 +144,9 @@ std::string AnswerWriter::csv(const Row& row) const {
   }
   if (columns_.shapes) {
     text += ',' + row.radius_m + ',' + row.end.csv() + ',' + row.on_axis.csv();
+  }
+  if (columns_.reasons) {
+    text += ',' + cell(row.reason) + ',' + row.hidden_s + ',' + row.from.csv();
   }
   return text + '\n';
 }
@@ -171,6 +183,8 @@ std::string AnswerWriter::json(const Row& row) const {
   writer.Bool(row.budget);
   writer.Key("known_to_m");
   write_number(writer, row.known_to_m);
+  writer.Key("blind_m");
+  write_number(writer, row.blind_m);
   if (columns_.hybrid_direction) {
     writer.Key("hybrid_direction");
     row.hybrid_direction.json(writer);
@@ -186,6 +200,14 @@ std::string AnswerWriter::json(const Row& row) const {
     row.end.json(writer);
     writer.Key("on_axis_m");
     row.on_axis.json(writer);
+  }
+  if (columns_.reasons) {
+    writer.Key("reason");
+    write_string(writer, row.reason);
+    writer.Key("hidden_s");
+    write_number(writer, row.hidden_s);
+    writer.Key("from_m");
+    row.from.json(writer);
   }
   writer.EndObject();
   return std::string(buffer.GetString(), buffer.GetSize()) + '\n';

@@ -13,6 +13,8 @@
 #include "program/distances/answer_writer.hpp"
 #include "program/distances/evaluation_options.hpp"
 #include "program/distances/point_options.hpp"
+#include "program/distances/recorded_robot.hpp"
+#include "program/distances/robot_options.hpp"
 #include "program/distances/search_options.hpp"
 #include "program/sensor_options.hpp"
 
@@ -31,24 +33,31 @@ struct DistancesOptions {
   std::string format = "csv";
   std::string output = "-";
   std::string pictures;
+  bool reasons = false;
   EvaluationOptions evaluation;
   SensorOptions sensor;
   SearchOptions search;
+  RecordedRobotOptions robot;
 };
 
 struct DistancesPlan {
   files::Recording recording;
-  Rig rig;                  ///< as the evaluator knows it
-  Pose T_output_world;      ///< from the evaluator's world to the frame in which the user speaks
-  std::vector<int> frames;  ///< indices into the recording
-  Points points;
+  Rig rig;                               ///< as the evaluator knows it
+  Pose T_output_world;                   ///< from the evaluator's world to the frame in which the user speaks
+  Pose T_world_recording;                ///< from the recording's world to the evaluator's
+  std::vector<int> frames;               ///< indices into the recording
+  Points points;                         ///< none: the robot's links are asked for
+  std::unique_ptr<RecordedRobot> robot;  ///< none: nothing is taken out of the images
   std::unique_ptr<DistanceEvaluator> evaluator;
+  bool asks_links = false;    ///< of the robot, in place of points
   bool takes_shapes = false;  ///< spheres and capsules, not only points
   AnswerFormat format = AnswerFormat::csv;
   AnswerColumns columns;
   double rho_m = 0;
-  std::string output;    ///< file, or - for standard output
-  std::string pictures;  ///< folder; empty: none
+  std::string output;                    ///< file, or - for standard output
+  std::string pictures;                  ///< folder; empty: none
+  std::vector<std::string> assumptions;  ///< lines for the user, said beside the answers
+  std::vector<std::string> warnings;
 };
 
 /// Opens the recording and makes the evaluator. Throws UsageError where options do not fit together or to the

@@ -25,12 +25,31 @@ files::ControlPoint command_line_point(const std::string& text, std::size_t numb
   }
 }
 
-void check_names(const std::vector<files::ControlPoint>& points, int frame_number) {
+/// Names of one frame differ; those of a file do already.
+void check_names(const Points& points) {
   std::set<std::string> names;
-  for (const auto& point : points) {
+  for (const auto& point : points.of_command_line) {
     if (!names.insert(point.id).second) {
-      fail("two control points of frame ", frame_number, " are called '", point.id, "'; names must differ");
+      fail_usage("--point: two control points are called '", point.id, "'; names must differ");
     }
+  }
+  const auto check = [&names](std::span<const files::ControlPoint> of_file) {
+    for (const auto& point : of_file) {
+      if (names.contains(point.id)) {
+        fail_usage("--point: '", point.id, "' is also a control point of the file of --points; names must differ");
+      }
+    }
+  };
+  check(points.of_file.fixed);
+  for (const auto& [frame, of_frame] : points.of_file.of_frame) {
+    check(of_frame);
+  }
+}
+
+void refuse_shape(const files::ControlPoint& point) {
+  if (point.has_end || point.capsule.radius_m != 0) {
+    fail_usage("control point '", point.id, "' has a ", point.has_end ? "second end" : "radius",
+               ", which only --method search knows");
   }
 }
 
@@ -40,7 +59,6 @@ std::vector<files::ControlPoint> Points::at(int frame_number) const {
   std::vector<files::ControlPoint> points = of_command_line;
   const auto more = of_file.at(frame_number);
   points.insert(points.end(), more.begin(), more.end());
-  check_names(points, frame_number);
   return points;
 }
 
@@ -54,7 +72,22 @@ Points control_points(const PointOptions& options) {
   } else if (points.of_command_line.empty()) {
     fail_usage("no control point: give --point x,y,z (metres, repeatable) or --points FILE.csv");
   }
+  check_names(points);
   return points;
+}
+
+void refuse_shapes(const Points& points) {
+  for (const auto& point : points.of_command_line) {
+    refuse_shape(point);
+  }
+  for (const auto& point : points.of_file.fixed) {
+    refuse_shape(point);
+  }
+  for (const auto& [frame, of_frame] : points.of_file.of_frame) {
+    for (const auto& point : of_frame) {
+      refuse_shape(point);
+    }
+  }
 }
 
 std::vector<files::ControlPoint> in_world(std::vector<files::ControlPoint> points, const Pose& T_world_output) {

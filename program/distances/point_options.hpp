@@ -19,12 +19,16 @@ struct Points {
   std::vector<files::ControlPoint> of_command_line;
   files::ControlPoints of_file;
 
-  /// Throws Error when two of one frame have the same name.
+  /// Their names differ.
   [[nodiscard]] std::vector<files::ControlPoint> at(int frame_number) const;
 };
 
-/// Throws UsageError when there is none or one cannot be read, and Error where the file is broken.
+/// Throws UsageError when there is none, one cannot be read, or two of one frame have the same name, and Error where
+/// the file is broken.
 Points control_points(const PointOptions& options);
+
+/// For methods that know points only: throws UsageError that names the first sphere or capsule.
+void refuse_shapes(const Points& points);
 
 /// The points, given in the output frame, in the world's.
 std::vector<files::ControlPoint> in_world(std::vector<files::ControlPoint> points, const Pose& T_world_output);

@@ -8,6 +8,7 @@
 #include "depthgrid/files/png.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/grid/map/map_file.hpp"
+#include "program/usage_error.hpp"
 #include "report/progress_line.hpp"
 
 namespace depthgrid::program {
@@ -19,14 +20,13 @@ double deepest_reading_m(files::Recording& recording, std::size_t camera, const 
                          const std::vector<int>& indices) {
   report::ProgressLine progress("looking for the deepest reading, frame", indices.size());
   files::Gray16Image image;
-  const auto& intrinsics = recording.rig().cameras[camera].intrinsics;
   double deepest_m = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    const auto file = recording.depth_file(indices[i], camera);
-    files::read_png16(file, image);
-    if (image.width_px != intrinsics.width_px || image.height_px != intrinsics.height_px) {
-      (void)recording.read(indices[i]);  // says what is wrong with this frame
+    if (!recording.has_image(indices[i], camera)) {
+      continue;
     }
+    const auto file = recording.depth_file(indices[i], camera);
+    files::read_png16(file, recording.recorded_intrinsics(camera), recording.rig().cameras[camera].id, image);
     const auto view =
         depth_view(image.pixels, image.width_px, image.height_px, recording.rig().cameras[camera].metres_per_unit);
     DepthImage depth(image.width_px, image.height_px);
@@ -70,7 +70,7 @@ std::unique_ptr<DistanceEvaluator> make_grid_evaluator(files::Recording& recordi
     reach_m =
         std::isfinite(rule.far_m) ? rule.far_m : deepest_reading_m(recording, source.principal, rule, frame_indices);
   }
-  const grid::DepthQuantisation cells = depth_quantisation(options, base, reach_m);
+  const grid::DepthQuantisation cells = as_usage([&] { return depth_quantisation(options, base, reach_m); });
   return std::make_unique<grid::GridEvaluator>(rig, source.principal, cells, settings, load_map(source, rig, cells));
 }
 

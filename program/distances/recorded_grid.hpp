@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "depthgrid/core/distance_evaluator.hpp"
 #include "depthgrid/files/recording.hpp"
 #include "program/distances/evaluation_options.hpp"
 

@@ -71,6 +71,11 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
       ->group("Search");
   command.add_option("--v-max", options.v_max_m_s, "fastest obstacle, metres a second; 0: nothing moves")
       ->group("Search");
+  command
+      .add_option("--smallest-obstacle", options.smallest_obstacle_m,
+                  "no obstacle is smaller, metres: small holes count as what surrounds them; 0: they are obstacles "
+                  "(default: of the rig file, else recommended for the sensor, else 0)")
+      ->group("Search");
   command.add_option("--box", options.box, "space of interest: x0,y0,z0,x1,y1,z1, metres, in the frame of --in")
       ->group("Search");
   command
@@ -82,18 +87,29 @@ void add_search_options(CLI::App& command, SearchOptions& options) {
       .add_option("--budget-nodes", options.budget_nodes,
                   "cells that the answers of one frame may open; what is not finished is a lower bound (default: all)")
       ->group("Search");
+  command
+      .add_option("--memory", options.memory,
+                  "what was seen free in earlier frames stays free until something could have come there by --v-max; "
+                  "before the first frame something may be anywhere (unknown) or nothing is hidden (empty)")
+      ->check(CLI::IsMember({"unknown", "empty"}))
+      ->group("Search");
+  command.add_option("--memory-voxel", options.memory_voxel_m, "side of the memory's voxels, metres (default 0.025)")
+      ->group("Search");
 }
 
 void refuse_search_options(const SearchOptions& options, const std::string& method) {
-  const std::array<std::pair<bool, const char*>, 8> options_given{
+  const std::array<std::pair<bool, const char*>, 11> options_given{
       {{options.unobserved.has_value(), "--unobserved"},
        {options.robot_pockets.has_value(), "--robot-pockets"},
        {options.ignored_pocket_m.has_value(), "--ignored-pocket"},
        {options.v_max_m_s.has_value(), "--v-max"},
+       {options.smallest_obstacle_m.has_value(), "--smallest-obstacle"},
        {options.resolution_m.has_value(), "--resolution"},
        {options.box.has_value(), "--box"},
        {options.d_max_m.has_value(), "--d-max"},
-       {options.budget_nodes.has_value(), "--budget-nodes"}}};
+       {options.budget_nodes.has_value(), "--budget-nodes"},
+       {options.memory.has_value(), "--memory"},
+       {options.memory_voxel_m.has_value(), "--memory-voxel"}}};
   for (const auto& [given, name] : options_given) {
     if (given) {
       fail_usage(name, " has no effect with --method ", method, "; use --method search");
@@ -121,6 +137,30 @@ views::Settings search_settings(const SearchOptions& options, const EvaluationOp
   settings.rho_m = evaluation.rho_m;
   settings.resolution_m = options.resolution_m.value_or(settings.resolution_m);
   settings.v_max_m_s = *options.v_max_m_s;
+  return settings;
+}
+
+std::optional<memory::MemorySettings> search_memory(const SearchOptions& options) {
+  if (!options.memory) {
+    if (options.memory_voxel_m) {
+      fail_usage("--memory-voxel has no effect without --memory unknown|empty");
+    }
+    return std::nullopt;
+  }
+  if (!options.box) {
+    fail_usage("--memory remembers a box: give the space of interest as --box x0,y0,z0,x1,y1,z1");
+  }
+  const views::BoxSpace box = box_of(*options.box);
+  memory::MemorySettings settings;
+  settings.low_world = box.low_world;
+  settings.high_world = box.high_world;
+  settings.voxel_m = options.memory_voxel_m.value_or(settings.voxel_m);
+  if (*options.memory == "empty") {
+    settings.start = memory::StartEmpty{};
+  } else {
+    settings.start = memory::StartUnknown{};
+  }
+  as_usage([&] { memory::validate(settings); });
   return settings;
 }
 

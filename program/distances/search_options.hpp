@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "depthgrid/core/rig.hpp"
+#include "depthgrid/memory/settings.hpp"
 #include "depthgrid/search/search.hpp"
 #include "program/distances/evaluation_options.hpp"
 
@@ -19,10 +20,13 @@ struct SearchOptions {
   std::optional<std::string> robot_pockets;
   std::optional<double> ignored_pocket_m;
   std::optional<double> v_max_m_s;
+  std::optional<double> smallest_obstacle_m;
   std::optional<double> resolution_m;
   std::optional<std::string> box;
   std::optional<double> d_max_m;
   std::optional<std::int64_t> budget_nodes;
+  std::optional<std::string> memory;  ///< how it begins
+  std::optional<double> memory_voxel_m;
 };
 
 void add_search_options(CLI::App& command, SearchOptions& options);
@@ -34,6 +38,10 @@ void refuse_search_options(const SearchOptions& options, const std::string& meth
 /// every option which is missing.
 views::Settings search_settings(const SearchOptions& options, const EvaluationOptions& evaluation,
                                 std::size_t principal, const std::vector<CameraMargins>& margins);
+
+/// Of what was seen free in the frames before, in the space of interest; nothing: no memory. Throws UsageError where
+/// that is no box, or a voxel is out of range.
+std::optional<memory::MemorySettings> search_memory(const SearchOptions& options);
 
 /// What one call may cost. Throws UsageError unless positive.
 search::Budget search_budget(const SearchOptions& options);
