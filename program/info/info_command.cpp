@@ -9,8 +9,12 @@
 #include "depthgrid/files/recording.hpp"
 #include "program/frame_selection.hpp"
 #include "program/info/agreement.hpp"
+#include "program/info/clamped_readings.hpp"
+#include "program/info/hole_picture.hpp"
 #include "program/info/info_report.hpp"
 #include "program/info/surface.hpp"
+#include "program/open_recording.hpp"
+#include "program/output_check.hpp"
 #include "program/output_file.hpp"
 #include "program/usage_error.hpp"
 #include "report/progress_line.hpp"
@@ -30,19 +34,34 @@ struct InfoOptions {
   int stride_px = 1;
   bool all_pairs = false;
   std::string output = "-";
+  std::string hole_picture;
 };
+
+/// Holes are looked at in no more frames than this: that takes its time.
+constexpr std::size_t kHoleFrames = 10;
 
 /// What the cameras measure on their own.
 void survey_images(files::Recording& recording, const std::vector<int>& indices, RecordingInfo& info) {
   report::ProgressLine progress("reading frame", indices.size());
   DepthImage depth;
+  std::vector<std::vector<bool>> pixels_read;
+  for (std::size_t k = 0; k < info.cameras.size(); ++k) {
+    pixels_read.push_back(recording.pixels_read(k));
+  }
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const auto frames = recording.read(indices[i]);
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const auto& camera = recording.rig().cameras[k];
       depth = DepthImage(camera.intrinsics.width_px, camera.intrinsics.height_px);
       normalise(frames[k].depth, camera.rule, depth);
+      info.cameras[k].clamped += remove_clamped(camera.rule, depth);
       info.cameras[k].add(depth);
+      if (i % (indices.size() / kHoleFrames + 1) == 0) {
+        info.holes[k].add(frames[k]);
+      }
+      if (const DepthImage* distorted = recording.distorted(k)) {
+        info.cameras[k].add_distorted(*distorted, pixels_read[k]);
+      }
     }
     progress.update(i + 1);
   }
@@ -72,11 +91,12 @@ void compare_cameras(files::Recording& recording, const std::vector<int>& indice
       const auto& camera = rig.cameras[k];
       DepthImage depth(camera.intrinsics.width_px, camera.intrinsics.height_px);
       normalise(frames[k].depth, camera.rule, depth);
+      remove_clamped(camera.rule, depth);
       make_surface(camera.intrinsics, depth, surfaces[k]);
     }
     for (std::size_t n = 0; n < info.pairs.size(); ++n) {
       auto& [a, b, agreement] = info.pairs[n];
-      const Pose T_b_a = rig.cameras[b].T_world_camera.inverse() * rig.cameras[a].T_world_camera;
+      const Pose T_b_a = recording.T_world_camera(indices[i], b).inverse() * recording.T_world_camera(indices[i], a);
       add_pair(surfaces[a], surfaces[b], rig.cameras[b].intrinsics, T_b_a, options.limit_m, options.stride_px,
                margins[a], margins[b], agreement);
       progress.update(i * info.pairs.size() + n + 1);
@@ -102,20 +122,25 @@ void run(const InfoOptions& options) {
   recording_options.camera_ids = options.cameras;
   recording_options.near_m = options.near_m;
   recording_options.far_m = options.far_m;
-  files::Recording recording(options.recording, recording_options);
-  const int first = recording.frame_number(0);
-  std::vector<int> indices = select_frames(options.frames, first, recording.frame_count());
-  for (int& index : indices) {
-    index -= first;
-  }
+  files::Recording recording = open_recording(options.recording, recording_options);
+  const std::vector<int> indices = select_frames(options.frames, recording);
+
+  refuse_overwriting({{"--output", options.output}, {"--hole-picture", options.hole_picture}},
+                     recording_inputs(recording, indices));
 
   OutputFile output(options.output);
   RecordingInfo info;
   info.frames_used = static_cast<int>(indices.size());
   info.cameras.resize(recording.rig().cameras.size());
+  for (const RigCamera& camera : recording.rig().cameras) {
+    info.holes.emplace_back(camera);
+  }
   survey_images(recording, indices, info);
   if (recording.simultaneous() || recording.frame_count() == 1) {
     compare_cameras(recording, indices, options, info);
+  }
+  if (!options.hole_picture.empty()) {
+    save_hole_picture(options.hole_picture, recording.rig(), recording.read(indices.front()));
   }
   output.write(to_text(recording, info, {options.limit_m, options.least_overlap, options.all_pairs}));
   output.commit();
@@ -143,6 +168,9 @@ void add_info_command(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--all-pairs", options->all_pairs, "print every pair, also when there are more than 30");
   command->add_option("--output", options->output, "file to write, - for standard output")->capture_default_str();
+  command->add_option("--hole-picture", options->hole_picture,
+                      "picture (PNG) of the first frame: what up to four cameras measure, and what that frees without "
+                      "and with a smallest obstacle of 2 and 5 cm");
   command->footer(
       "Examples:\n"
       "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "program/info/calibration_report.hpp"
 #include "report/statistics.hpp"
 
 namespace depthgrid::program {
@@ -38,9 +39,15 @@ std::string cameras_text(const files::Recording& recording, const RecordingInfo&
     const auto& survey = info.cameras[k];
     const SensorMargin margin = survey.noise.suggested_margin();
     text += line("%-17s %4d x %-4d %10.1f %%   %6.3f ... %-6.3f m   %.4f + %.5f D^2 m\n", camera.id.c_str(),
-                 camera.intrinsics.width_px, camera.intrinsics.height_px, percent(survey.invalid, survey.pixels),
-                 static_cast<double>(survey.nearest_m), static_cast<double>(survey.farthest_m), margin.constant_m,
-                 margin.quadratic_per_m);
+                 camera.intrinsics.width_px, camera.intrinsics.height_px,
+                 percent(survey.invalid - survey.clamped, survey.pixels), static_cast<double>(survey.nearest_m),
+                 static_cast<double>(survey.farthest_m), margin.constant_m, margin.quadratic_per_m);
+    if (survey.clamped > 0) {
+      text += line(
+          "  %.1f %% of the pixels say \"farther than %g m\" (clamp_beyond_far): no surfaces, left out here and "
+          "below\n",
+          percent(survey.clamped, survey.pixels), camera.rule.far_m);
+    }
   }
   return text;
 }
@@ -138,9 +145,19 @@ void CameraSurvey::add(const DepthImage& depth) {
     }
     nearest_m = nearest_m > 0.0F ? std::min(nearest_m, z) : z;
     farthest_m = std::max(farthest_m, z);
+    depths.add(z);
   }
   pixels += static_cast<std::int64_t>(size);
   noise.add(depth);
+}
+
+void CameraSurvey::add_distorted(const DepthImage& depth, const std::vector<bool>& read) {
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const bool measured = depth.data()[i] > 0.0F;
+    raw_invalid += measured ? 0 : 1;
+    raw_cut += measured && !read[i] ? 1 : 0;
+  }
+  raw_pixels += static_cast<std::int64_t>(read.size());
 }
 
 std::string to_text(const files::Recording& recording, const RecordingInfo& info, const InfoLimits& limits) {
@@ -152,6 +169,8 @@ std::string to_text(const files::Recording& recording, const RecordingInfo& info
   text += recording.rate_hz() ? line("%.4g a second\n", *recording.rate_hz()) : std::string("frame rate unknown\n");
   text += rig.T_floor_world ? "floor frame: known (--in floor)\n\n" : "floor frame: unknown\n\n";
   text += cameras_text(recording, info) + "\n";
+  text += holes_text(rig, info.holes) + "\n";
+  text += calibration_text(recording, info) + "\n";
   text += margins_text(rig) + "\n";
 
   std::vector<const PairSurvey*> pairs;
