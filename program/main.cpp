@@ -7,6 +7,8 @@
 #include "program/distances/distances_command.hpp"
 #include "program/info/info_command.hpp"
 #include "program/map/map_command.hpp"
+#include "program/rig/rig_command.hpp"
+#include "program/robot/robot_command.hpp"
 #include "program/version.hpp"
 
 int main(int argc, char** argv) {
@@ -26,5 +28,7 @@ int main(int argc, char** argv) {
   depthgrid::program::add_distances_command(app);
   depthgrid::program::add_info_command(app);
   depthgrid::program::add_map_command(app);
+  depthgrid::program::add_rig_command(app);
+  depthgrid::program::add_robot_command(app);
   return depthgrid::program::run_command_line(app, argc, argv);
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "program/output_check.hpp"
 
 namespace depthgrid::program {
 
@@ -15,13 +16,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   if (path_ == "-") {
     return;
   }
-  const auto folder = fs::path(path_).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder)) {
-    fail("cannot write ", path_, ": there is no folder ", folder.string(), "; create it first");
-  }
-  if (fs::is_directory(path_)) {
-    fail("cannot write ", path_, ": it is a folder; name a file");
-  }
+  check_output_file(path_);
   replacement_.emplace(path_);
   stream_ = replacement_->stream();
 }

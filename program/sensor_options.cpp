@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "depthgrid/core/plausibility.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 #include "program/usage_error.hpp"
 
@@ -97,6 +98,7 @@ std::vector<CameraMargins> camera_margins(const SensorOptions& options, const Ri
     validate(PoseMargin{margins.translation_m, margins.rotation_rad, options.margin_time_m.value_or(0.0)});
     margins.translation_m += options.margin_time_m.value_or(0.0);
     validate(margins, ("camera '" + camera.id + "'").c_str());
+    check_plausible(margins, ("camera '" + camera.id + "'").c_str());
     all.push_back(margins);
   }
   return all;
@@ -110,6 +112,13 @@ std::optional<double> near_limit_m(const SensorOptions& options) {
 std::optional<double> far_limit_m(const SensorOptions& options) {
   const double far_m = options.sensor ? sensor_model(*options.sensor).rule.far_m : MeasurementRule{}.far_m;
   return options.far_m || !std::isfinite(far_m) ? options.far_m : far_m;
+}
+
+std::optional<int> filter_radius_px(const SensorOptions& options) {
+  if (options.margin_lateral_px || !options.sensor) {
+    return options.margin_lateral_px;
+  }
+  return sensor_model(*options.sensor).margin.lateral_px;
 }
 
 std::optional<bool> clamp_beyond_far(const SensorOptions& options) {

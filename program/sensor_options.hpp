@@ -44,6 +44,9 @@ std::vector<CameraMargins> camera_margins(const SensorOptions& options, const Ri
 std::optional<double> near_limit_m(const SensorOptions& options);
 std::optional<double> far_limit_m(const SensorOptions& options);
 
+/// The filter radius: the user's, else the sensor model's, else nothing (the rig file's own).
+std::optional<int> filter_radius_px(const SensorOptions& options);
+
 /// Whether readings beyond the far limit count as that limit: as the user says, else as the sensor model does where the
 /// limit is the model's, else nothing (the rig file's own).
 std::optional<bool> clamp_beyond_far(const SensorOptions& options);

@@ -20,4 +20,16 @@ template <class... Parts>
   throw UsageError(text.str());
 }
 
+/// Runs a check of what the command line says: the library's Error becomes a UsageError of the same text.
+template <class Check>
+decltype(auto) as_usage(const Check& check) {
+  try {
+    return check();
+  } catch (const UsageError&) {
+    throw;
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+}
+
 }  // namespace depthgrid::program

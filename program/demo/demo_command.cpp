@@ -9,10 +9,13 @@
 #include <sstream>
 #include <vector>
 
+#include "depthgrid/core/blind_layer.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/search/search_evaluator.hpp"
 #include "depthgrid/simulation/demo_scene.hpp"
 #include "program/demo/demo_picture.hpp"
+#include "program/output_check.hpp"
 
 // NOLINTBEGIN(cppcoreguidelines-pro-type-vararg): printf lays out the table; streams would need a line a column
 
@@ -23,7 +26,7 @@ namespace {
 /// An answer this much short of the true distance (both capped at rho) owes it to a shadow, not to the size of a cell.
 constexpr double kShadowShortfall = 0.03;
 
-std::vector<Frame> frames_of(const std::vector<simulation::View>& views) {
+std::vector<Frame> frames_of(const simulation::DemoScene& demo, const std::vector<simulation::View>& views) {
   std::vector<Frame> frames;
   for (const simulation::View& view : views) {
     const int width_px = view.depth_m.width_px();
@@ -32,7 +35,8 @@ std::vector<Frame> frames_of(const std::vector<simulation::View>& views) {
     frame.depth = depth_view(
         std::span(view.depth_m.data(), static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px)),
         width_px, height_px);
-    frame.robot = {view.robot_near_m.data(), view.robot_far_m.data(), width_px};
+    frame.robot = with_layer({view.robot_near_m.data(), view.robot_far_m.data(), width_px},
+                             demo.rig.cameras[frames.size()].intrinsics, demo.robot_padding_m);
     frames.push_back(frame);
   }
   return frames;
@@ -44,7 +48,7 @@ views::Settings search_settings(const Rig& rig, const grid::DepthQuantisation& q
   views::Settings settings;
   settings.space = views::FrustumSpace{0, space.d_min_m(), space.d_max_m()};
   settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0.0};
-  settings.margins.assign(rig.cameras.size(), CameraMargins{});
+  settings.margins.assign(rig.cameras.size(), CameraMargins{.sensor = {}, .smallest_obstacle_m = 0});
   settings.rho_m = rho_m;
   settings.v_max_m_s = 0.0;
   return settings;
@@ -123,12 +127,15 @@ void print_closing(const std::vector<double>& true_m, const DemoAnswers& answers
 }  // namespace
 
 void run_demo(const DemoOptions& options) {
+  if (!options.picture.empty()) {
+    check_output_file(options.picture);
+  }
   const simulation::DemoScene demo = simulation::demo_scene();
   std::vector<simulation::View> views;
   for (const RigCamera& camera : demo.rig.cameras) {
     views.push_back(demo.scene.render(camera.intrinsics, camera.T_world_camera, demo.robot_padding_m));
   }
-  const std::vector<Frame> frames = frames_of(views);
+  const std::vector<Frame> frames = frames_of(demo, views);
 
   const grid::DepthQuantisation quantisation;
   const double rho_m = grid::EvaluationSettings{}.rho_m;
@@ -150,7 +157,7 @@ void run_demo(const DemoOptions& options) {
   print_closing(true_m, answers, rho_m);
   if (!options.picture.empty()) {
     write_demo_picture(options.picture, demo, frames, answers, quantisation);
-    std::printf("Picture: %s\n", options.picture.c_str());
+    std::printf("Picture: %s\n", printable(options.picture).c_str());
   }
 }
 

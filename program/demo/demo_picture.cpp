@@ -7,6 +7,7 @@
 #include "report/canvas.hpp"
 #include "report/depth_picture.hpp"
 #include "report/free_space_slice.hpp"
+#include "report/scene_colours.hpp"
 
 namespace depthgrid::program {
 
@@ -16,6 +17,14 @@ using report::Align;
 using report::Canvas;
 using report::CanvasPoint;
 using report::Colour;
+using report::kFreeByOther;
+using report::kGrayArea;
+using report::kNothingNear;
+using report::kOutsideView;
+using report::kPerson;
+using report::kRobot;
+using report::kSeenAnswer;
+using report::kUnseenAnswer;
 using report::Rectangle;
 using report::Sight;
 
@@ -23,15 +32,6 @@ constexpr double kMargin = 24;
 constexpr double kPanelWidth = 660;
 constexpr double kDepthHeight = kPanelWidth * 480 / 640;
 constexpr double kTextSize = 16;
-
-constexpr Colour kOutside{0.87, 0.91, 0.96};
-constexpr Colour kGray{0.60, 0.60, 0.62};
-constexpr Colour kKnownFreeByOther{0.78, 0.92, 0.78};
-constexpr Colour kObstacle{0.80, 0.36, 0.10};
-constexpr Colour kRobot{0.35, 0.33, 0.62};
-constexpr Colour kShadowAnswer{0.84, 0.08, 0.30};
-constexpr Colour kSeenAnswer{0.00, 0.45, 0.72};
-constexpr Colour kNothingNear{0.10, 0.55, 0.22};
 
 /// The slice: x to the right, y upwards, at the height of the forearm.
 constexpr double kLeftX = -2.55;
@@ -58,7 +58,7 @@ Colour answer_colour(const Proximity& answer) {
     case ProximityState::measured:
       return kSeenAnswer;
     default:
-      return kShadowAnswer;
+      return kUnseenAnswer;
   }
 }
 
@@ -91,23 +91,23 @@ report::Raster slice_raster(const simulation::DemoScene& demo, const Rig& rig, s
     for (int column = 0; column < width; ++column) {
       const Eigen::Vector3d p_world =
           area.corner_world + (column + 0.5) / width * area.along_world + (row + 0.5) / height * area.down_world;
-      Colour colour = kGray;
+      Colour colour = kGrayArea;
       switch (
           sights[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)]) {
         case Sight::outside:
-          colour = kOutside;
+          colour = kOutsideView;
           break;
         case Sight::free_for_principal:
           colour = report::kWhite;
           break;
         case Sight::free_for_other:
-          colour = kKnownFreeByOther;
+          colour = kFreeByOther;
           break;
         case Sight::gray:
           break;
       }
       if (demo.scene.contains(p_world, simulation::Body::obstacle)) {
-        colour = kObstacle;
+        colour = kPerson;
       } else if (demo.scene.contains(p_world, simulation::Body::robot)) {
         colour = kRobot;
       }
@@ -156,12 +156,12 @@ void draw_key(Canvas& canvas, double y_px) {
     bool point = false;
   };
   constexpr std::array<Entry, 8> kEntries{{
-      {"gray area", kGray, false},
-      {"known free to camera 2", kKnownFreeByOther, false},
-      {"outside camera 1's view", kOutside, false},
-      {"person", kObstacle, false},
+      {"gray area", kGrayArea, false},
+      {"known free to camera 2", kFreeByOther, false},
+      {"outside camera 1's view", kOutsideView, false},
+      {"person", kPerson, false},
       {"arm", kRobot, false},
-      {"nearest: unseen space", kShadowAnswer, true},
+      {"nearest: unseen space", kUnseenAnswer, true},
       {"nearest: seen surface", kSeenAnswer, true},
       {"nothing within 0.4 m", kNothingNear, true},
   }};

@@ -11,10 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/core/rectification.hpp"
+#include "depthgrid/files/foreign_recording.hpp"
 #include "depthgrid/files/rig_file.hpp"
 #include "depthgrid/grid/map/machine_memory.hpp"
 #include "depthgrid/grid/map/map_builder.hpp"
 #include "depthgrid/grid/map/map_file.hpp"
+#include "program/output_check.hpp"
 #include "program/output_file.hpp"
 #include "program/usage_error.hpp"
 #include "report/number_text.hpp"
@@ -55,24 +59,40 @@ std::string storage_text(grid::MapStorage storage) {
 /// The cameras of the rig that the map is for, in the order in which `depthgrid distances` takes them.
 Rig chosen_cameras(const BuildOptions& options) {
   std::filesystem::path file = options.rig;
+  files::refuse_foreign_recording(file);
   if (std::filesystem::is_directory(file)) {
     file /= "rig.json";
   }
-  Rig rig = files::load_rig(file).rig;
-  if (!options.cameras.empty()) {
-    std::vector<RigCamera> chosen;
-    for (const std::string& id : options.cameras) {
-      chosen.push_back(rig.cameras[camera_index(rig, id)]);
+  refuse_overwriting({{"--output", options.output}}, {{"the rig file", file}});
+  check_output_file(options.output);
+  const files::RigFile rig_file = files::load_rig(file);
+  for (std::size_t k = 0; k < rig_file.tracks.size(); ++k) {
+    if (rig_file.tracks[k].moves()) {
+      fail(file.string(), ": camera '", rig_file.rig.cameras[k].id,
+           "' moves, and a map is for cameras that stand still; --method search needs none");
     }
-    rig.cameras = std::move(chosen);
-    validate(rig);
+  }
+  Rig rig = rig_file.rig;
+  for (RigCamera& camera : rig.cameras) {  // as a recording hands its images out
+    camera.intrinsics = rectified_camera(camera.intrinsics, camera.distortion);
+    camera.distortion = {};
+  }
+  if (!options.cameras.empty()) {
+    as_usage([&] {
+      std::vector<RigCamera> chosen;
+      for (const std::string& id : options.cameras) {
+        chosen.push_back(rig.cameras[camera_index(rig, id)]);
+      }
+      rig.cameras = std::move(chosen);
+      validate(rig);
+    });
   }
   return rig;
 }
 
 void print_line(const std::string& line) {
   OutputFile output("-");
-  output.write(line + "\n");
+  output.write(printable(line) + "\n");
   output.commit();
 }
 
@@ -87,8 +107,10 @@ void check(const BuildOptions& options) {
 
 void build(const BuildOptions& options) {
   check(options);
+  as_usage([&] { grid::validate(options.cells); });
   const Rig rig = chosen_cameras(options);
-  const std::size_t principal = options.principal.empty() ? 0 : camera_index(rig, options.principal);
+  const std::size_t principal =
+      options.principal.empty() ? 0 : as_usage([&] { return camera_index(rig, options.principal); });
   const grid::DepthGrid depth_grid(rig.cameras[principal].intrinsics, options.cells);
   const std::vector<grid::SecondaryCamera> secondaries = grid::secondary_cameras(rig, principal);
   const auto storage = options.storage == "lists" ? grid::MapStorage::pixel_lists : grid::MapStorage::one_pixel;
@@ -135,7 +157,7 @@ void info(const std::string& file) {
   const grid::DepthGrid depth_grid(calibration.principal, calibration.quantisation);
   std::ostringstream fingerprint;
   fingerprint << std::hex << std::setw(16) << std::setfill('0') << header.fingerprint;
-  std::string text = "file         " + file + ", version " + std::to_string(header.version) + ", " +
+  std::string text = "file         " + printable(file) + ", version " + std::to_string(header.version) + ", " +
                      size_text(header.file_bytes) + "\nstorage      " + storage_text(header.storage) + ", " +
                      std::to_string(header.cells) + " cells";
   if (header.storage == grid::MapStorage::pixel_lists) {
@@ -179,6 +201,9 @@ void add_build_command(CLI::App& map) {
                       "refuse to take more memory than this, GiB (default: what is free)");
   command->add_option("--threads", options->threads, "threads to build with, 0 = one a core")->capture_default_str();
   command->add_option("--output", options->output, "map file to write")->required();
+  command->footer(
+      "Example:\n  depthgrid map build ../shared/data/kinect3_ball --count 300 --output ball.map\n"
+      "It says first how much memory it needs. What a map costs and saves stands in docs/depth-grid-map.md.");
   command->callback([options] { build(*options); });
 }
 
@@ -191,6 +216,7 @@ void add_map_command(CLI::App& app) {
   auto file = std::make_shared<std::string>();
   CLI::App* command = map->add_subcommand("info", "what a map file holds; its checksum is not compared");
   command->add_option("FILE", *file, "map file")->required();
+  command->footer("Example:\n  depthgrid map info ball.map");
   command->callback([file] { info(*file); });
   map->footer(
       "Examples:\n"

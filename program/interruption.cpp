@@ -1,0 +1,61 @@
+#include "program/interruption.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstddef>
+
+#include "depthgrid/core/file_replacement.hpp"
+
+namespace depthgrid::program {
+namespace {
+
+constexpr std::size_t kLongestLine = 160;
+
+/// A signal and its line, made before it comes: a handler may not make texts.
+struct Interruption {
+  int signal = 0;
+  const char* name = nullptr;
+  std::array<char, kLongestLine> line{};
+  std::size_t line_bytes = 0;
+};
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler gets nothing handed over
+std::array<Interruption, 3> interruptions{{{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}};
+
+/// Only async-signal-safe functions: unlink, write, _exit.
+extern "C" void end_on_signal(int signal) {
+  remove_unfinished_files();
+  for (const Interruption& interruption : interruptions) {
+    if (interruption.signal == signal) {
+      const ssize_t written = ::write(STDERR_FILENO, interruption.line.data(), interruption.line_bytes);
+      static_cast<void>(written);
+    }
+  }
+  ::_exit(128 + signal);
+}
+
+}  // namespace
+
+void end_tidily_on_signals(const std::string& program_name) {
+  const std::string erased = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // the progress line
+  struct sigaction action {};
+  action.sa_handler = end_on_signal;
+  ::sigemptyset(&action.sa_mask);
+  for (const Interruption& interruption : interruptions) {
+    ::sigaddset(&action.sa_mask, interruption.signal);
+  }
+  for (Interruption& interruption : interruptions) {
+    const std::string line =
+        erased + program_name + ": stopped by " + interruption.name + "; unfinished output was removed\n";
+    interruption.line_bytes = std::min(line.size(), kLongestLine);
+    std::copy_n(line.begin(), interruption.line_bytes, interruption.line.begin());
+    struct sigaction before {};
+    if (::sigaction(interruption.signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) {
+      static_cast<void>(::sigaction(interruption.signal, &action, nullptr));
+    }
+  }
+}
+
+}  // namespace depthgrid::program

@@ -1,0 +1,18 @@
+// A recording as a command line names it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "depthgrid/files/recording.hpp"
+#include "program/output_check.hpp"
+
+namespace depthgrid::program {
+
+/// Throws UsageError where the options do not fit the recording, and Error where the recording is broken.
+files::Recording open_recording(const std::string& path, const files::RecordingOptions& options);
+
+/// The files that working on these frames reads.
+std::vector<NamedFile> recording_inputs(const files::Recording& recording, const std::vector<int>& indices);
+
+}  // namespace depthgrid::program
