@@ -23,11 +23,13 @@ struct CommandResult {
 };
 
 /// Runs `depthgrid ARGUMENTS` in `folder` through the shell; standard output and error are caught in files elsewhere.
-inline CommandResult run_command(const std::string& arguments, const TemporaryFolder& folder) {
+/// `before` stands before the command: a limit, for instance.
+inline CommandResult run_command(const std::string& arguments, const TemporaryFolder& folder,
+                                 const std::string& before = {}) {
   const std::filesystem::path out = folder.path().string() + ".out";
   const std::filesystem::path err = folder.path().string() + ".err";
-  const std::string line = "cd '" + folder.path().string() + "' && '" DEPTHGRID_COMMAND "' " + arguments + " > '" +
-                           out.string() + "' 2> '" + err.string() + "' < /dev/null";
+  const std::string line = "cd '" + folder.path().string() + "' && { " + before + "'" DEPTHGRID_COMMAND "' " +
+                           arguments + "; } > '" + out.string() + "' 2> '" + err.string() + "' < /dev/null";
   const int status = std::system(line.c_str());  // NOLINT(cert-env33-c): the tests choose every word of it
   CommandResult result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(out), read_bytes(err)};
   std::filesystem::remove(out);

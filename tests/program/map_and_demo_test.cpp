@@ -36,7 +36,7 @@ TEST(Map, BrokenCommandsEndInOneLineAndLeaveNothing) {
            Broken{"map build . --memory 0.000001 --output wall.map", "more than the 1073 available"},
            Broken{"map build nowhere --output wall.map", "nowhere"},
            Broken{"map build . --storage octree --output wall.map", "octree"},
-           Broken{"map build . --output .", "not a regular file"},
+           Broken{"map build . --output .", "cannot write .: it is a folder"},
            Broken{"map info rig.json", "rig.json"},
            Broken{"map info absent.map", "absent.map"},
        }) {

@@ -86,6 +86,25 @@ TEST(SearchCommand, DistanceOfAWallFromPointSphereAndCapsule) {
   EXPECT_EQ(rows[4].number("distance_m"), 0.4);
 }
 
+TEST(SearchCommand, SaysWhichSmallestObstacleItAssumes) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  auto file = wall_rig();
+  const std::string question = kSearch + kPoint;
+  const auto said = [&](const std::string& options) { return run_command(question + options, folder).err; };
+  EXPECT_THAT(said("--sensor ideal"), HasSubstr("smallest obstacle: 0 m (recommended for ideal); every pixel without"));
+  EXPECT_THAT(said("--sensor kinect_v1"), HasSubstr("smallest obstacle: 0.05 m (recommended for kinect_v1); what is "));
+  EXPECT_THAT(said("--margin-constant 0.01"), HasSubstr("smallest obstacle: 0 m (nothing is said of it)"));
+  EXPECT_THAT(said("--sensor kinect_v1 --smallest-obstacle 0.02"), HasSubstr(": 0.02 m (--smallest-obstacle)"));
+  file.rig.cameras[0].margins = CameraMargins{.sensor = {.constant_m = 0.01}, .smallest_obstacle_m = 0.03};
+  files::save_rig(file, folder / "rig.json");
+  EXPECT_THAT(said("--sensor kinect_v1"),
+              HasSubstr("'left' 0.03 m (the rig file), 'right' 0.05 m (recommended for kinect_v1); what"));
+  EXPECT_THAT(said("--sensor ideal --smallest-obstacle=-1"), HasSubstr("smallest obstacle is -1 m"));
+  EXPECT_THAT(run_command("distances . --frames 5 --sensor ideal --smallest-obstacle 0.02 " + kPoint, folder).err,
+              HasSubstr("--smallest-obstacle has no effect with --method corrected"));
+}
+
 TEST(SearchCommand, JsonLinesHaveTheShapesToo) {
   const TemporaryFolder folder;
   write_wall(folder);
@@ -249,6 +268,74 @@ TEST(Margins, InfoShowsThoseOfTheRigFile) {
   EXPECT_THAT(result.out,
               HasSubstr("\nright             0.0024 + 0.0000 D + 0.00633 D^2 m, 2 px; 0.0100 m, 0.0020 rad; "
                         "33.3 ms, 0.0 ms (sensor kinect_v1)\n"));
+}
+
+TEST(SearchCommand, RemembersWhatEarlierFramesSawFree) {
+  TemporaryFolder folder;
+  write_wall(folder);
+  const std::vector<std::uint16_t> near(std::size_t{64} * 48, 600);
+  for (const std::string name : {"left_006.png", "right_006.png"}) {
+    files::write_png_gray16(folder / name, 64, 48, near);
+  }
+  const std::string question = "distances . --method search " + kSpace + kPolicies + kPoint + "--sensor ideal ";
+  const std::vector<Row> without = rows_of(run_command(question, folder));
+  ASSERT_EQ(without.size(), 2U);
+  EXPECT_EQ(without[1].number("distance_m"), 0);
+  const std::vector<Row> with = rows_of(run_command(question + "--memory unknown --memory-voxel 0.02", folder));
+  ASSERT_EQ(with.size(), 2U);
+  EXPECT_EQ(with[0].number("distance_m"), without[0].number("distance_m"));
+  EXPECT_GT(with[1].number("distance_m"), 0.15);
+  EXPECT_LT(with[1].number("distance_m"), without[0].number("distance_m"));
+
+  EXPECT_THAT(run_command(question + "--memory-voxel 0.02", folder).err, HasSubstr("--memory-voxel has no effect"));
+  EXPECT_THAT(run_command(question + "--memory empty --memory-voxel 9", folder).err, HasSubstr("voxel is 9 m"));
+  files::RigFile timeless = wall_rig();
+  timeless.rate_hz.reset();
+  files::save_rig(timeless, folder / "rig.json");
+  EXPECT_THAT(run_command(question + "--memory empty", folder).err, HasSubstr("says no times"));
+}
+
+/// A wall that comes half a metre nearer in a tenth of a second.
+TEST(SearchCommand, SaysWhatTheMemoryHeldImpossible) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const std::vector<std::uint16_t> nearer(std::size_t{64} * 48, 1500);
+  for (const auto& pattern : wall_rig().depth_files) {
+    files::write_png_gray16(folder / files::depth_file_name(pattern, 6), 64, 48, nearer);
+  }
+  const std::string question = "distances . --method search " + kSpace +
+                               "--unobserved obstacle --outside ignored --robot-pockets obstacle --sensor ideal "
+                               "--memory unknown --memory-voxel 0.1 --point 0.2,0,1.2 ";
+  const auto wrong = run_command(question + "--v-max 1", folder);
+  EXPECT_EQ(wrong.exit_code, 0);
+  EXPECT_THAT(wrong.err, HasSubstr("depthgrid: warning: 1 image shows a surface where nothing could be, last at "));
+  EXPECT_THAT(wrong.err, HasSubstr("(camera right): v_max is too low, a calibration or a clock is wrong"));
+  const auto right = run_command(question + "--v-max 6", folder);
+  EXPECT_EQ(right.exit_code, 0);
+  EXPECT_THAT(right.err, ::testing::Not(HasSubstr("nothing could be")));
+}
+
+/// A hand right before both cameras in the second frame: what they saw free is hidden.
+TEST(SearchCommand, SaysInWordsWhatIsNearest) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  const std::vector<std::uint16_t> hand(std::size_t{64} * 48, 600);
+  for (const auto& pattern : wall_rig().depth_files) {
+    files::write_png_gray16(folder / files::depth_file_name(pattern, 6), 64, 48, hand);
+  }
+  const std::string question = "distances . --method search " + kSpace +
+                               "--unobserved obstacle --outside ignored --robot-pockets obstacle --sensor ideal "
+                               "--v-max 1 --point 0.2,0,1.6 --reasons ";
+  const auto without = run_command(question, folder);
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_THAT(without.out, HasSubstr(",reason,hidden_s,from_x_m,from_y_m,from_z_m\n5,"));
+  EXPECT_THAT(without.out, HasSubstr(",a surface,,,,\n6,"));
+  EXPECT_THAT(without.out, HasSubstr(",space hidden behind a surface,,,,\n"));
+  const auto with = run_command(question + "--memory unknown --format jsonl", folder);
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_THAT(with.out, HasSubstr("\"reason\":\"space hidden behind a surface, where nothing could be until "));
+  EXPECT_THAT(with.out, ::testing::ContainsRegex("\"hidden_s\":0[.]0[0-9]+"));
+  EXPECT_THAT(with.out, ::testing::ContainsRegex("\"from_m\":\\[-?[0-9.]+,-?[0-9.]+,[0-9.]+\\]"));
 }
 
 }  // namespace
