@@ -82,11 +82,6 @@ bool view_within(const CameraSpace& camera, double near_m, const Vector3d& p_wor
 
 }  // namespace
 
-const char* to_string(Fault fault) {
-  constexpr std::array<const char*, kFaults> kNames{"over_estimate", "undecided", "not_tight", "implausible"};
-  return kNames.at(static_cast<std::size_t>(fault));
-}
-
 AnswerCheck::Soundness AnswerCheck::soundness(const Capsule& asked, const Answer& answer) const {
   Soundness result;
   const double answer_m = answer.nearest.distance_m;
@@ -97,6 +92,7 @@ AnswerCheck::Soundness AnswerCheck::soundness(const Capsule& asked, const Answer
   settings.gap_m = kProvenM;
   settings.smallest_box_m = 0.5 * kProvenM;
   settings.enough_m = answer_m;
+  settings.box_limit = box_limit_;
   const Interval interval = oracle_->distance(to_reference(asked), settings);
   result.boxes = interval.boxes;
   result.proven_m = interval.lo_m;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "depthgrid/search/search.hpp"
+#include "reference/fault.hpp"
 #include "reference/search_problem.hpp"
 
 namespace depthgrid::reference {
@@ -13,25 +14,16 @@ namespace depthgrid::reference {
 /// Proven down to this: no point of O is nearer than the answer less this.
 inline constexpr double kProvenM = 0.5e-3;
 
-/// What may be wrong with an answer, worst first.
-enum class Fault : std::uint8_t {
-  over_estimate,  ///< a point of O is nearer than the answer
-  undecided,      ///< the oracle found no nearer point of O, but could not exclude one beyond kProvenM either
-  not_tight,      ///< the nearest point fails the test of tightness
-  implausible,    ///< state, camera, flags or the rest of the answer contradict the images or each other
-};
-inline constexpr std::size_t kFaults = 4;
-[[nodiscard]] const char* to_string(Fault fault);
-
 struct Finding {
   Fault fault;
   std::string what;
 };
 
-/// Looks at the answers of one problem, which must outlive it.
+/// Looks at the answers of one problem, which must outlive it. `box_limit`: what the oracle may look at for an answer.
 class AnswerCheck {
  public:
-  explicit AnswerCheck(const SearchProblem& problem) : problem_(&problem), oracle_(problem.oracle.get()) {}
+  explicit AnswerCheck(const SearchProblem& problem, std::int64_t box_limit = SearchSettings{}.box_limit)
+      : problem_(&problem), oracle_(problem.oracle.get()), box_limit_(box_limit) {}
 
   /// Everything but soundness: form, state and, where no budget stopped it, tightness.
   [[nodiscard]] std::optional<Finding> form(const Capsule& primitive, const Answer& answer) const;
@@ -52,6 +44,7 @@ class AnswerCheck {
 
   const SearchProblem* problem_;
   const Reference* oracle_;
+  std::int64_t box_limit_;
 };
 
 }  // namespace depthgrid::reference

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "reference/hole_readings.hpp"
+
 namespace depthgrid::reference {
 namespace {
 
@@ -56,8 +58,20 @@ CameraSpace::CameraSpace(const CameraInput& input)
     note_first_depths();
     return;  // no frame: no measurement anywhere, nothing free
   }
+  std::vector<float> readings_m(pixels_.size());
+  for (int v = 0; v < camera_.height_px; ++v) {
+    for (int u = 0; u < camera_.width_px; ++u) {
+      readings_m[index(u, v)] = reading_m(view, input.rule, u, v);
+    }
+  }
+  const std::vector<float> measured_m = readings_m;
+  if (input.smallest_obstacle_m > 0) {
+    readings_m = with_holes_filled(readings_m, camera_, input.rule, input.sensor, view, input.smallest_obstacle_m);
+  }
   // D - m(D) of every pixel on its own, or the robot's exit where the pixel shows the robot.
   std::vector<double> reduced_m(pixels_.size(), 0.0);
+  // What a pixel says of its neighbours: the same, but nothing where it shows the robot and nothing else.
+  std::vector<double> beside_m(pixels_.size(), 0.0);
   for (int v = 0; v < camera_.height_px; ++v) {
     for (int u = 0; u < camera_.width_px; ++u) {
       Pixel& pixel = pixels_[index(u, v)];
@@ -69,13 +83,20 @@ CameraSpace::CameraSpace(const CameraInput& input)
           pixel.robot_far_m = far_m;
         }
       }
-      const double depth_m = reading_m(view, input.rule, u, v);
+      const double depth_m = readings_m[index(u, v)];
       if (depth_m > 0) {
         const SensorMargin& m = input.sensor;
-        const double front_m = depth_m - (m.constant_m + m.linear * depth_m + m.quadratic_per_m * depth_m * depth_m);
-        const bool shows_robot =
-            pixel.robot_near_m > 0 && pixel.robot_near_m <= front_m && depth_m <= pixel.robot_far_m;
+        const double margin_m = m.constant_m + m.linear * depth_m + m.quadratic_per_m * depth_m * depth_m;
+        const double front_m = depth_m - margin_m;
+        // All that the reading may mean, from D - m to D, or some of it, from D - m to D + m.
+        const bool within = input.frame.robot.within_margin;
+        const bool shows_robot = pixel.robot_near_m > 0 &&
+                                 pixel.robot_near_m <= (within ? depth_m + margin_m : front_m) &&
+                                 (within ? front_m : depth_m) <= pixel.robot_far_m;
         reduced_m[index(u, v)] = std::max(0.0, shows_robot ? pixel.robot_far_m + input.robot_pocket_m : front_m);
+        const bool nothing_else = within && shows_robot && measured_m[index(u, v)] > 0 && front_m > 0 &&
+                                  depth_m + margin_m <= pixel.robot_far_m;
+        beside_m[index(u, v)] = nothing_else ? kInfinity : reduced_m[index(u, v)];
       }
     }
   }
@@ -83,11 +104,11 @@ CameraSpace::CameraSpace(const CameraInput& input)
   const int w = input.sensor.lateral_px;
   for (int v = 0; v < camera_.height_px; ++v) {
     for (int u = 0; u < camera_.width_px; ++u) {
-      double smallest_m = kInfinity;
+      double smallest_m = reduced_m[index(u, v)];
       for (int dv = -w; dv <= w; ++dv) {
         for (int du = -w; du <= w; ++du) {
           const bool inside = camera_.contains(u + du, v + dv);
-          smallest_m = std::min(smallest_m, inside ? reduced_m[index(u + du, v + dv)] : 0.0);
+          smallest_m = std::min(smallest_m, inside ? beside_m[index(u + du, v + dv)] : 0.0);
         }
       }
       pixels_[index(u, v)].free_m = smallest_m;

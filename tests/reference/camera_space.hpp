@@ -26,7 +26,8 @@ struct CameraInput {
   Frame frame;
   SensorMargin sensor;
   PoseMargin pose;
-  double robot_pocket_m = 0;  ///< a robot pixel frees this much beyond the robot's exit
+  double robot_pocket_m = 0;       ///< a robot pixel frees this much beyond the robot's exit
+  double smallest_obstacle_m = 0;  ///< s of hole_readings.hpp; 0: a pixel without reading frees nothing
 };
 
 /// The part of the camera's own view that counts, when it is the principal camera: space outside it is of no interest.

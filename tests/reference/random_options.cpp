@@ -32,7 +32,9 @@ void for_each_field(Options& options, Visit&& visit) {
   visit("skew", options.skew);
   visit("moved", options.moved);
   visit("missing", options.missing);
+  visit("smallest", options.smallest_m);
   visit("resolution", options.resolution_m);
+  visit("within", options.within);
   visit("primitive", options.primitive);
   visit("query", options.query);
 }

@@ -157,6 +157,7 @@ void RandomProblem::refer_frames() {
     frame.depth = units[k].empty() ? depth_view(std::span(views[k].depth_m.data(), pixels), width_px, height_px)
                                    : depth_view(units[k], width_px, height_px, 0.001);
     frame.robot = {views[k].robot_near_m.data(), views[k].robot_far_m.data(), width_px};
+    frame.robot.within_margin = within_margin;
     frames.push_back(frame);
   }
 }

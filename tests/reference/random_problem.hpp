@@ -62,7 +62,9 @@ struct RandomOptions {
   std::optional<bool> skew;            ///< the cameras expose at different times
   std::optional<bool> moved;           ///< the cameras do not stand where the rig says
   std::optional<bool> missing;         ///< one camera has not sent an image
+  std::optional<double> smallest_m;    ///< the smallest obstacle of all cameras; where there is one, images have holes
   std::optional<double> resolution_m;  ///< of the search
+  std::optional<bool> within;          ///< readings within their margin of the robot count as the robot's
   std::optional<Shape> primitive;      ///< of all queries
   std::optional<int> query;            ///< the only query of interest; the others are asked too
 };
@@ -83,6 +85,7 @@ struct RandomProblem {
   int cell_count = 0;
   double rho_m = 0.4;
   bool outside_is_obstacle = false;
+  bool within_margin = false;  ///< RobotView's, in all frames
   SensorMargin sensor;
   PoseMargin pose;
   std::vector<simulation::View> views;

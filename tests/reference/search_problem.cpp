@@ -95,10 +95,13 @@ Problem oracle_problem(const SearchProblem& asked) {
     input.rule = camera.rule;
     input.frame = asked.frames[k];
     input.sensor = margins.sensor;
+    input.smallest_obstacle_m = margins.smallest_obstacle_m;
     input.pose = {margins.translation_m, margins.rotation_rad, 0.0};
     if (asked.present(k)) {
-      input.pose.time_m = asked.settings.v_max_m_s * (std::abs(asked.frames[k].time_s - t_ref_s) +
-                                                      margins.half_exposure_s + margins.time_uncertainty_s);
+      input.pose.time_m =
+          asked.settings.v_max_m_s *
+          (std::abs(asked.frames[k].time_s - t_ref_s) + margins.half_exposure_s + margins.time_uncertainty_s) *
+          (1 + margins.rotation_rad);
     }
     input.robot_pocket_m = asked.settings.policies.ignored_pocket_m;
     problem.cameras.push_back(input);
@@ -113,6 +116,45 @@ Problem oracle_problem(const SearchProblem& asked) {
   problem.uncovered = of(asked.settings.policies.unobserved);
   problem.rho_m = asked.settings.rho_m;
   return problem;
+}
+
+/// Discs and lone pixels without reading.
+void punch_holes(Random& random, RandomProblem& scene) {
+  for (std::size_t k = 0; k < scene.views.size(); ++k) {
+    DepthImage& depth_m = scene.views[k].depth_m;
+    const double lone = std::pow(10.0, random.uniform(-3, -0.5));
+    const int discs = random.integer(0, 6);
+    std::vector<Vector3d> holes;
+    for (int i = 0; i < discs; ++i) {
+      const double x = random.uniform(0, depth_m.width_px());
+      const double y = random.uniform(0, depth_m.height_px());
+      holes.emplace_back(x, y, random.uniform(0.5, 6));
+    }
+    for (int v = 0; v < depth_m.height_px(); ++v) {
+      for (int u = 0; u < depth_m.width_px(); ++u) {
+        const bool in_disc = std::any_of(holes.begin(), holes.end(), [&](const Vector3d& hole) {
+          return std::hypot(u - hole.x(), v - hole.y()) <= hole.z();
+        });
+        if (random.chance(lone) || in_disc) {
+          depth_m.at(u, v) = 0;
+          if (!scene.units[k].empty()) {
+            scene.units[k][depth_m.index(u, v)] = 0;
+          }
+        }
+      }
+    }
+  }
+}
+
+/// Some problems in ten assume a smallest obstacle. Draws of its own: problems without it are what they were.
+double draw_smallest_obstacle(const RandomOptions& options, RandomProblem& scene) {
+  Random random(options.seed * 0x9E3779B97F4A7C15U + 4);
+  const double drawn_m = random.chance(0.3) ? random.uniform(0.01, 0.15) : 0.0;
+  const double smallest_m = options.smallest_m.value_or(drawn_m);
+  if (smallest_m > 0) {
+    punch_holes(random, scene);
+  }
+  return smallest_m;
 }
 
 }  // namespace
@@ -149,6 +191,10 @@ SearchProblem make_search_problem(const RandomOptions& options, int queries) {
   SearchProblem problem;
   problem.options = options;
   problem.scene = make_random_problem(scene);
+  Random within(options.seed * 0x9E3779B97F4A7C15U + 5);  // leaves the other draws as they were
+  const bool drawn_within = within.chance(0.4);
+  problem.scene.within_margin = options.within.value_or(drawn_within);
+  problem.scene.refer_frames();
   problem.rig = problem.scene.rig;
   problem.ideal = !margins && !lateral && !skew;
   problem.moved = moved;
@@ -168,6 +214,7 @@ SearchProblem make_search_problem(const RandomOptions& options, int queries) {
     settings.space = views::FrustumSpace{problem.scene.principal, problem.scene.d_min_m,
                                          problem.scene.d_min_m + problem.scene.step_m * problem.scene.cell_count};
   }
+  const double smallest_m = draw_smallest_obstacle(options, problem.scene);
   const int absent = random.integer(0, static_cast<int>(problem.rig.cameras.size()) - 1);
   for (std::size_t k = 0; k < problem.rig.cameras.size(); ++k) {
     CameraMargins drawn = draw_margins(random, lateral);
@@ -176,6 +223,7 @@ SearchProblem make_search_problem(const RandomOptions& options, int queries) {
       drawn = {};
       drawn.sensor.lateral_px = lateral_px;
     }
+    drawn.smallest_obstacle_m = smallest_m;
     settings.margins.push_back(drawn);
     Frame frame = problem.scene.frames[k];
     const double late_s = random.uniform(0, 0.033);

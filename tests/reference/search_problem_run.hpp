@@ -16,6 +16,9 @@ class SearchRun {
   /// To all primitives, in one call.
   [[nodiscard]] std::vector<Answer> distances(const search::Budget& budget = {});
   [[nodiscard]] std::vector<Answer> hybrid();
+  /// The same as distances(), of a search that has been asked before, while the frames came one by one: primitive by
+  /// primitive, the last one first.
+  [[nodiscard]] std::vector<Answer> distances_with_history() const;
 
  private:
   const SearchProblem* problem_;
