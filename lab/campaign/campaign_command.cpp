@@ -68,17 +68,6 @@ void examine_all(const CampaignOptions& options, CampaignState& state) {
             << " queries: " << faults_text(tally) << '\n';
 }
 
-/// Whether any answer was above the distance, or may have been.
-bool unsound(const CampaignState& state) {
-  for (const auto& [width_px, tally] : state.tallies) {
-    const auto of_budget = tally.counts.find("budget: over_estimate");
-    if (tally.faults(Fault::over_estimate) > 0 || (of_budget != tally.counts.end() && of_budget->second > 0)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 void run(CampaignOptions options) {
   CampaignState state =
       !options.file.empty() && std::filesystem::exists(options.file) ? read_state(options.file) : CampaignState();
@@ -97,8 +86,8 @@ void run(CampaignOptions options) {
   if (!options.page.empty()) {
     write_tables(options.page, soundness_tables(state));
   }
-  if (unsound(state)) {
-    fail("there were over-estimates");
+  if (state.is_unsound()) {
+    fail("there were over-estimates, or answers that depend on what was asked before");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "reference/answer_check.hpp"
 #include "reference/search_problem_run.hpp"
 
 namespace depthgrid::lab {
@@ -80,28 +81,6 @@ void add_shortfall(const SearchProblem& problem, std::size_t query, const Answer
   }
 }
 
-/// Answers of calls that may open few cubes only.
-void examine_budget(const SearchProblem& problem, reference::SearchRun& run, Tally& tally) {
-  reference::Random random(problem.options.seed * 0x9E3779B97F4A7C15U + 5);
-  search::Budget budget;
-  budget.nodes = static_cast<std::int64_t>(std::pow(10.0, random.uniform(0, 4.5)));
-  const AnswerCheck check(problem);
-  const std::vector<Answer> answers = run.distances(budget);
-  for (std::size_t q = 0; q < answers.size(); ++q) {
-    ++tally.counts["budget: queries"];
-    tally.counts["budget: stopped"] += answers[q].nearest.budget ? 1 : 0;
-    const std::string nodes = "of " + std::to_string(*budget.nodes) + " nodes, ";
-    for (const auto& finding :
-         {check.form(problem.primitives[q], answers[q]), check.soundness(problem.primitives[q], answers[q]).finding}) {
-      if (finding) {
-        const std::string kind = std::string("budget: ") + to_string(finding->fault);
-        ++tally.counts[kind];
-        note(tally, problem, q, kind, nodes + finding->what);
-      }
-    }
-  }
-}
-
 /// What is wrong with a direction, if anything.
 std::string wrong_direction(const Answer& answer, const Answer& without, double blend) {
   if (answer.nearest.distance_m != without.nearest.distance_m &&
@@ -122,10 +101,60 @@ std::string wrong_direction(const Answer& answer, const Answer& without, double 
   return text.str();
 }
 
-void examine_directions(SearchProblem& problem, std::span<const Answer> without, Tally& tally) {
+/// Answers of calls that may open few cubes only.
+void ask_with_budget(const SearchProblem& problem, reference::SearchRun& run, Tally& tally) {
+  reference::Random random(problem.options.seed * 0x9E3779B97F4A7C15U + 5);
+  const auto nodes = static_cast<std::int64_t>(std::pow(10.0, random.uniform(0, 4.5)));
+  search::Budget budget;
+  budget.nodes = nodes;
+  examine_budget_answers(problem, run.distances(budget), nodes, tally);
+}
+
+void ask_for_directions(SearchProblem& problem, std::span<const Answer> without, Tally& tally) {
   reference::Random random(problem.options.seed * 0x9E3779B97F4A7C15U + 7);
   problem.settings.direction_blend = random.chance(0.5) ? 1.0 : random.uniform(0, 1);
-  const std::vector<Answer> answers = reference::SearchRun(problem).hybrid();
+  examine_directions(problem, reference::SearchRun(problem).hybrid(), without, tally);
+}
+
+}  // namespace
+
+void examine_budget_answers(const SearchProblem& problem, std::span<const Answer> answers, std::int64_t nodes,
+                            Tally& tally) {
+  const AnswerCheck check(problem);
+  for (std::size_t q = 0; q < answers.size(); ++q) {
+    ++tally.counts["budget: queries"];
+    tally.counts["budget: stopped"] += answers[q].nearest.budget ? 1 : 0;
+    for (const auto& finding :
+         {check.form(problem.primitives[q], answers[q]), check.soundness(problem.primitives[q], answers[q]).finding}) {
+      if (finding) {
+        const std::string kind = std::string("budget: ") + to_string(finding->fault);
+        ++tally.counts[kind];
+        note(tally, problem, q, kind, "of " + std::to_string(nodes) + " nodes, " + finding->what);
+      }
+    }
+  }
+}
+
+void examine_later_answers(const SearchProblem& problem, std::span<const Answer> answers, std::span<const Answer> fresh,
+                           Tally& tally) {
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  for (std::size_t q = 0; q < answers.size(); ++q) {
+    ++tally.counts["history: queries"];
+    const Proximity& before = fresh[q].nearest;
+    const Proximity& now = answers[q].nearest;
+    bool all = same(before.distance_m, now.distance_m) && before.state == now.state;
+    for (int i = 0; i < 3; ++i) {
+      all = all && same(before.nearest_world[i], now.nearest_world[i]);
+    }
+    if (!all) {
+      ++tally.counts["history: different"];
+      note(tally, problem, q, "history", "another answer after other questions");
+    }
+  }
+}
+
+void examine_directions(const SearchProblem& problem, std::span<const Answer> answers, std::span<const Answer> without,
+                        Tally& tally) {
   for (std::size_t q = 0; q < answers.size(); ++q) {
     ++tally.counts["direction: queries"];
     tally.counts["direction: given"] += answers[q].hybrid_direction_world.isZero(0) ? 0 : 1;
@@ -136,8 +165,6 @@ void examine_directions(SearchProblem& problem, std::span<const Answer> without,
     }
   }
 }
-
-}  // namespace
 
 void examine_answers(const SearchProblem& problem, std::span<const Answer> answers, Tally& tally) {
   const std::vector<std::string> kinds = kinds_of(problem);
@@ -182,8 +209,9 @@ void examine(std::uint64_t seed, const std::string& code, Tally& tally) {
   const std::vector<Answer> answers = run.distances();
   examine_answers(problem, answers, tally);
   if (seed % kProblemsPerExtra == 0) {
-    examine_budget(problem, run, tally);
-    examine_directions(problem, answers, tally);
+    ask_with_budget(problem, run, tally);
+    examine_later_answers(problem, run.distances_with_history(), answers, tally);
+    ask_for_directions(problem, answers, tally);
   }
   tally.queries_by_code[code] += static_cast<std::int64_t>(answers.size());
   tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -57,4 +57,12 @@ std::int64_t Tally::faults(reference::Fault fault) const {
   return all != rows.end() ? all->second.faults.at(static_cast<std::size_t>(fault)) : 0;
 }
 
+bool Tally::is_unsound() const {
+  const auto some = [this](const char* what) {
+    const auto found = counts.find(what);
+    return found != counts.end() && found->second > 0;
+  };
+  return faults(reference::Fault::over_estimate) > 0 || some("budget: over_estimate") || some("history: different");
+}
+
 }  // namespace depthgrid::lab

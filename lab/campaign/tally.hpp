@@ -9,7 +9,7 @@
 
 #include "lab/campaign/log_histogram.hpp"
 #include "lab/campaign/seed_ranges.hpp"
-#include "reference/answer_check.hpp"
+#include "reference/fault.hpp"
 
 namespace depthgrid::lab {
 
@@ -39,6 +39,8 @@ struct Tally {
   /// Throws Error when the width differs or a seed is in both.
   void add(const Tally& other);
   [[nodiscard]] std::int64_t faults(reference::Fault fault) const;
+  /// Any answer was above the distance, or depends on what was asked before.
+  [[nodiscard]] bool is_unsound() const;
 };
 
 }  // namespace depthgrid::lab
