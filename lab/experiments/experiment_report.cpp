@@ -46,6 +46,11 @@ void check_folder(const fs::path& folder) {
   }
 }
 
+std::string frame_name(std::size_t frame) {
+  const std::string number = std::to_string(frame + 1);
+  return "frame-" + std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number + ".png";
+}
+
 }  // namespace
 
 ExperimentReport::ExperimentReport(const Experiment& experiment, const Options& options) : folder_(options.out) {
@@ -77,6 +82,8 @@ void ExperimentReport::picture(std::string file, report::Canvas canvas, std::str
   pictures_.emplace_back(std::move(file), std::move(canvas));
 }
 
+void ExperimentReport::frame(report::Canvas canvas) { frames_.push_back(std::move(canvas)); }
+
 void ExperimentReport::write() const {
   std::error_code error;
   if (!fs::is_directory(folder_, error) && !fs::create_directory(folder_, error)) {
@@ -84,6 +91,9 @@ void ExperimentReport::write() const {
   }
   for (const auto& [file, canvas] : pictures_) {
     canvas.save_png(folder_ / file);
+  }
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    frames_[i].save_png(folder_ / frame_name(i));
   }
   nlohmann::ordered_json all;
   all["about"] = about_;
@@ -100,6 +110,9 @@ std::string ExperimentReport::text() const {
   text += "Report: " + (folder_ / "report.md").string() + ", figures.json";
   for (const auto& [file, canvas] : pictures_) {
     text += ", " + file;
+  }
+  if (!frames_.empty()) {
+    text += ", " + frame_name(0) + " to " + frame_name(frames_.size() - 1);
   }
   return text + "\n";
 }

@@ -32,7 +32,10 @@ class ExperimentReport {
   /// `file` without folder, ends in .png; appears in report.md at this place with `caption` below it.
   void picture(std::string file, report::Canvas canvas, std::string_view caption);
 
-  /// Writes pictures, figures.json and, last, report.md, each complete or not at all. Throws Error.
+  /// The next frame of a film: frame-0001.png and so on, which the report names together.
+  void frame(report::Canvas canvas);
+
+  /// Writes pictures, frames, figures.json and, last, report.md, each complete or not at all. Throws Error.
   void write() const;
 
   /// The headlines, and the files that write() writes.
@@ -45,6 +48,7 @@ class ExperimentReport {
   std::string markdown_;
   std::vector<std::string> headlines_;
   std::vector<std::pair<std::string, report::Canvas>> pictures_;
+  std::vector<report::Canvas> frames_;
 };
 
 }  // namespace depthgrid::experiments

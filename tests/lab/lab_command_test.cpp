@@ -54,7 +54,7 @@ TEST(Experiment, BrokenCommandsEndInOneLineAndLeaveNothing) {
            Broken{"experiment shadow --width wide", 2, "wide"},
            Broken{"experiment shadow --seed -1", 2, "seed"},
            Broken{"experiment shadow --seed 99999999999999999999", 2, "whole number"},
-           Broken{"experiment shadow --out ''", 1, "--out"},
+           Broken{"experiment shadow --out ''", 2, "--out"},
            Broken{"experiment shadow hidden-hand", 2, "hidden-hand"},
        }) {
     const TemporaryFolder folder;
@@ -78,7 +78,7 @@ TEST(Lab, BrokenOptionsEndInOneLine) {
        {"speedy", "speed --cameras 0", "speed --page page.md", "campaign --seeds 0", "letter", "letter rates",
         "letter rate --cameras none", "letter errors --scenes -1", "recordings --stride 0", "map-storages --slow",
         "image-in --frame-sets 0", "robot-removal --poses 0", "control-cycle --cycles 1", "worst-cases now",
-        "workcell pictures none"}) {
+        "growth --frame-sets 0", "workcell pictures none"}) {
     const auto result = run_command(arguments, folder);
     EXPECT_EQ(result.exit_code, 2) << arguments;
     EXPECT_THAT(result.err, StartsWith("depthgrid-lab: ")) << arguments;

@@ -11,6 +11,8 @@
 #include "lab/experiments/campaign/campaign_motions.hpp"
 #include "lab/experiments/campaign/campaign_report.hpp"
 #include "lab/experiments/experiment_report.hpp"
+#include "lab/experiments/loop/avoidance_cell.hpp"
+#include "lab/experiments/loop/avoidance_run.hpp"
 
 namespace depthgrid::experiments {
 

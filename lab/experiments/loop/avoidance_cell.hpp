@@ -40,6 +40,8 @@ class AvoidanceCell {
   /// One ideal image a camera.
   void render(const Rig& rig, std::vector<DepthImage>& depth_m);
 
+  [[nodiscard]] const simulation::Workcell& cell() const noexcept { return cell_; }
+
   /// To what moves (with what it carries); to plates, table, workpiece. Nothing when there is none.
   [[nodiscard]] std::optional<TrueDistance> to_person() const;
   [[nodiscard]] std::optional<TrueDistance> to_objects() const;

@@ -4,6 +4,7 @@
 
 #include "depthgrid/avoidance/model_limits.hpp"
 #include "depthgrid/avoidance/nothing_near.hpp"
+#include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
 #include "depthgrid/views/surveillance_radius.hpp"
@@ -17,17 +18,29 @@ constexpr double kAcceleration_rad_s2 = 300 * std::numbers::pi / 180;
 }  // namespace
 
 std::string_view title(Method method) noexcept {
-  constexpr std::array<std::string_view, 5> kTitles{"no avoidance", "letter, 1 camera", "letter, 2 cameras",
-                                                    "search, 2 cameras", "search, pockets ignored"};
+  constexpr std::array<std::string_view, 6> kTitles{
+      "no avoidance",      "letter, 1 camera",        "letter, 2 cameras",
+      "search, 2 cameras", "search, pockets ignored", "search with memory"};
   return kTitles.at(static_cast<std::size_t>(method));
 }
 
 std::string_view key(Method method) noexcept {
-  constexpr std::array<std::string_view, 5> kKeys{"none", "letter_one", "letter_two", "search", "search_pockets"};
+  constexpr std::array<std::string_view, 6> kKeys{"none",   "letter_one",     "letter_two",
+                                                  "search", "search_pockets", "search_memory"};
   return kKeys.at(static_cast<std::size_t>(method));
 }
 
 int cameras_of(Method method) noexcept { return method == Method::none ? 0 : method == Method::letter_one ? 1 : 2; }
+
+AvoidanceSettings kinect_settings(int width_px) {
+  AvoidanceSettings settings;
+  settings.sensor = "kinect_v1";
+  settings.width_px = width_px;
+  settings.removal_padding_m = 0.05;  // 3 sigma and half a step at 2.5 m
+  settings.memory_padding_m = 0.05;   // half the smallest obstacle, and as much for what is not known of holes
+  settings.memory_margin_in_test = true;
+  return settings;
+}
 
 control::JointVector start_rad() {
   control::JointVector q(7);
@@ -59,13 +72,35 @@ views::Settings search_settings(const Rig& rig, const AvoidanceSettings& setting
   result.resolution_m = settings.resolution_m;
   // An image is at most this old when it is asked: what is beyond rho then still is.
   result.rho_m = views::surveillance_radius_m(settings.rho_m, settings.v_max_m_s,
-                                              settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s);
+                                              settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s,
+                                              settings.known_layer_m);
+  return result;
+}
+
+Rig with_declarations(Rig rig) {
+  for (RigCamera& camera : rig.cameras) {
+    const SensorModel& model = sensor_model(camera.sensor);
+    camera.margins->smallest_obstacle_m = model.smallest_obstacle_m;
+    camera.margins->second_view_x_m = model.second_view_x_m;
+    camera.margins->half_exposure_s = 0.008;
+  }
+  return rig;
+}
+
+AvoidanceSettings settings_for(Method method, const AvoidanceSettings& settings) {
+  AvoidanceSettings result = settings;
+  if (method == Method::search_memory) {
+    result.removal_padding_m = settings.memory_padding_m;
+    result.margin_in_test = settings.memory_margin_in_test;
+    result.known_layer_m = 1.5 * settings.memory_padding_m;  // pixels and margins make it thicker
+  }
   return result;
 }
 
 robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings) {
   robot::ExposureSettings result;
   result.removal.padding_m = settings.removal_padding_m;
+  result.removal.margin_in_test = settings.margin_in_test;
   return result;
 }
 
@@ -76,8 +111,14 @@ std::unique_ptr<DistanceEvaluator> make_evaluator(Method method, const Rig& rig,
   }
   if (is_search(method)) {
     const double pocket_m = method == Method::search_pockets ? settings.ignored_pocket_m : 0;
-    return std::make_unique<search::SearchEvaluator>(rig, search_settings(rig, settings, pocket_m),
-                                                     search::EvaluatorOptions{.directions = 1, .budget = budget});
+    search::EvaluatorOptions options{.directions = 1, .budget = budget};
+    if (method == Method::search_memory) {
+      const simulation::Arrangement letter = simulation::letter_arrangement();
+      options.memory = memory::MemorySettings{.low_world = letter.workspace_low_world,
+                                              .high_world = letter.workspace_high_world,
+                                              .start = memory::StartUnknown{}};
+    }
+    return std::make_unique<search::SearchEvaluator>(rig, search_settings(rig, settings, pocket_m), options);
   }
   const simulation::Arrangement letter = simulation::letter_arrangement();
   grid::EvaluationSettings grid;
@@ -93,6 +134,8 @@ avoidance::LoopSettings loop_settings(Method method, const robot::RobotModel& mo
                                       const AvoidanceSettings& settings) {
   avoidance::LoopSettings result;
   result.evaluate_every = settings.evaluate_every;
+  // As the letter's loop, with a padding of 1 cm. Around a thick layer that has to be known.
+  result.blind_layer = method == Method::search_memory ? control::BlindLayer::kept_clear : control::BlindLayer::ignored;
   control::ControllerSettings& controller = result.controller;
   controller.limits = avoidance::joint_limits(model, kAcceleration_rad_s2);
   controller.period_s = settings.period_s;

@@ -22,11 +22,12 @@ enum class Method : std::uint8_t {
   letter_two,      ///< the letter's evaluation with both cameras
   search,          ///< the sound search with both cameras: all that nobody sees is an obstacle
   search_pockets,  ///< the same, with the declared policy that ignores pockets right behind the robot
+  search_memory,   ///< the search with a declared smallest obstacle and a memory of what was seen free
 };
 inline constexpr std::array kMethods{Method::none, Method::letter_one, Method::letter_two, Method::search,
                                      Method::search_pockets};
 [[nodiscard]] constexpr bool is_search(Method method) noexcept {
-  return method == Method::search || method == Method::search_pockets;
+  return method == Method::search || method == Method::search_pockets || method == Method::search_memory;
 }
 
 /// As in tables ("letter, 2 cameras"), and in JSON ("letter_two").
@@ -51,8 +52,16 @@ struct AvoidanceSettings {
   double approach_gain_per_s = 2.0;
   double approach_stop_m = 0.03;
   double removal_padding_m = 0.01;
-  int evaluate_every = 2;  ///< periods between two evaluations, of every method
+  bool margin_in_test = false;     ///< robot::RemovalSettings
+  double memory_padding_m = 0.01;  ///< of Method::search_memory, instead of removal_padding_m
+  bool memory_margin_in_test = false;
+  double known_layer_m = 0;  ///< that the laws keep clear: the search looks so much farther
+  int evaluate_every = 2;    ///< periods between two evaluations, of every method
 };
+
+/// Both cameras simulated Kinects. In images of 320 pixels a hole of a pixel is as wide as the smallest obstacle at the
+/// robot's distance.
+[[nodiscard]] AvoidanceSettings kinect_settings(int width_px);
 
 /// Joints at the beginning, the flange before the base and above the floor; hexagon in the plane y = const around it.
 [[nodiscard]] control::JointVector start_rad();
@@ -63,6 +72,13 @@ struct AvoidanceSettings {
 
 [[nodiscard]] views::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings,
                                               double ignored_pocket_m = 0);
+
+/// The rig with what Method::search_memory declares: the sensor's recommended smallest obstacle and its second view,
+/// and an exposure of 16 ms, since the simulated one takes no time.
+[[nodiscard]] Rig with_declarations(Rig rig);
+
+/// With the padding of the method.
+[[nodiscard]] AvoidanceSettings settings_for(Method method, const AvoidanceSettings& settings);
 
 [[nodiscard]] robot::ExposureSettings exposure_settings(const AvoidanceSettings& settings);
 

@@ -7,12 +7,11 @@
 #include "depthgrid/control/simulated_arm.hpp"
 #include "depthgrid/core/error.hpp"
 #include "lab/experiments/loop/contact_watch.hpp"
+#include "lab/experiments/loop/motion_count.hpp"
 
 namespace depthgrid::experiments {
 
 namespace {
-
-constexpr double kSlowShare = 0.1;  // of the task's speed
 
 /// In simulated time nothing may fail: what follows a failure would be measured as if it were the method's.
 void need(bool done, const char* what, double time_s) {
@@ -22,14 +21,19 @@ void need(bool done, const char* what, double time_s) {
 }
 
 /// One run while it goes on.
+Rig rig_of(Method method, const AvoidanceSettings& settings) {
+  Rig rig = avoidance_rig(std::max(1, cameras_of(method)), settings.width_px, settings.sensor);
+  return method == Method::search_memory ? with_declarations(std::move(rig)) : rig;
+}
+
 class Run {
  public:
   Run(Method method, const robot::RobotModel& model, const AvoidanceMotion& motion, const RunSettings& settings)
       : model_(model),
         settings_(settings),
-        common_(settings.common),
+        common_(settings_for(method, settings.common)),
         method_(method),
-        rig_(avoidance_rig(std::max(1, cameras_of(method)), common_.width_px, common_.sensor)),
+        rig_(rig_of(method, common_)),
         loop_settings_(loop_settings(method, model, common_)),
         hexagon_(hexagon(model, motion.hexagon_radius_m)),
         task_(hexagon_),
@@ -40,7 +44,8 @@ class Run {
         port_(arm_, history_),
         cell_(model, motion),
         images_(rig_, model, history_, cell_, *evaluator_, common_, settings.seed, settings.on_frame),
-        contacts_(method, model, loop_, loop_settings_.parts, common_) {}
+        contacts_(method, model, loop_, loop_settings_.parts, common_),
+        motion_count_(common_.period_s, hexagon_.speed_m_s, common_.rho_m) {}
 
   RunResult result() {
     const auto periods = static_cast<std::int64_t>(std::llround(settings_.duration_s / common_.period_s));
@@ -81,8 +86,14 @@ class Run {
       return static_cast<std::int64_t>(
           std::floor(static_cast<double>(period) * common_.period_s * kFrameRate_hz + 1e-9));
     };
-    if (cameras_of(method_) > 0 && (k == 0 || frame_at(k) != frame_at(k - 1))) {
+    if (k > 0 && frame_at(k) == frame_at(k - 1)) {
+      return;
+    }
+    if (cameras_of(method_) > 0) {
       images_.expose(time_s);
+    }
+    if (settings_.on_instant) {
+      settings_.on_instant({time_s, cell_.cell(), loop_, *evaluator_, task_.vertices_reached()});
     }
   }
 
@@ -94,24 +105,19 @@ class Run {
     const auto object = cell_.to_objects();
     const double person_m = person ? person->distance_m : std::numeric_limits<double>::infinity();
     const double object_m = object ? object->distance_m : std::numeric_limits<double>::infinity();
-    result_.summary.smallest_person_m = std::min(result_.summary.smallest_person_m, person_m);
-    result_.summary.object_contacts += object_m <= 0 && object_before_m_ > 0 ? 1 : 0;
-    object_before_m_ = object_m;
-    if (k > 0 && speed_m_s < kSlowShare * hexagon_.speed_m_s) {
-      result_.summary.stopped_s += common_.period_s;
-      result_.summary.false_stop_s += std::min(person_m, object_m) > common_.rho_m ? common_.period_s : 0.0;
-    }
+    motion_count_.take(speed_m_s, person_m, object_m, result_.summary);
     if (person) {
       contacts_.take(time_s, *person, result_.summary);
     }
     if (settings_.sample_every > 0 && k % settings_.sample_every == 0) {
-      const Eigen::Vector3d to_nearest =
-          control::obstacle_of(loop_.answers()[0]).direction_world.value_or(Eigen::Vector3d::Zero());
+      const Eigen::Vector3d to_nearest = control::obstacle_of(loop_.answers()[0], control::BlindLayer::ignored)
+                                             .direction_world.value_or(Eigen::Vector3d::Zero());
       RunSample sample{time_s,   joints_of_cycle(loop_, common_.period_s), tip,
                        person_m, loop_.report().output.repulsion_m_s,      to_nearest,
                        {}};
       for (const Answer& answer : loop_.answers()) {
-        sample.told_m.push_back(std::min(common_.rho_m, control::obstacle_of(answer).distance_m.value_or(0)));
+        sample.told_m.push_back(
+            std::min(common_.rho_m, control::obstacle_of(answer, control::BlindLayer::ignored).distance_m.value_or(0)));
       }
       result_.samples.push_back(std::move(sample));
     }
@@ -128,7 +134,7 @@ class Run {
 
   const robot::RobotModel& model_;
   const RunSettings& settings_;
-  const AvoidanceSettings& common_;
+  AvoidanceSettings common_;  ///< those of the method
   Method method_;
   Rig rig_;
   avoidance::LoopSettings loop_settings_;
@@ -142,9 +148,9 @@ class Run {
   AvoidanceCell cell_;
   ImageDelivery images_;
   ContactWatch contacts_;
+  MotionCount motion_count_;
   RunResult result_;
   Eigen::Vector3d tip_before_ = Eigen::Vector3d::Zero();
-  double object_before_m_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -31,12 +32,24 @@ struct RunResult {
   std::vector<RunSample> samples;  ///< every sample_every periods, when asked for
 };
 
+/// A run at the exposure of a frame; valid for the call alone.
+struct RunInstant {
+  double time_s = 0;
+  const simulation::Workcell& cell;
+  const avoidance::AvoidanceLoop& loop;
+  DistanceEvaluator& evaluator;
+  std::int64_t vertices = 0;  ///< reached so far
+};
+/// May be empty. Asking the evaluator changes nothing in the run.
+using OnInstant = std::function<void(const RunInstant& instant)>;
+
 struct RunSettings {
   AvoidanceSettings common;
   double duration_s = 8;
   int sample_every = 0;    ///< periods; 0: no samples
   std::uint64_t seed = 1;  ///< of the sensors
   OnFrame on_frame{};
+  OnInstant on_instant{};
 };
 
 /// Throws Error as its parts do, and when start, cycle or images are refused.

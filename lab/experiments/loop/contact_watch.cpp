@@ -55,7 +55,8 @@ std::optional<double> ContactWatch::told_of_link_m(std::size_t link) const {
   std::optional<double> nearest_m;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (parts_[i].link == link) {
-      const double told_m = control::obstacle_of(loop_.answers()[i]).distance_m.value_or(0);
+      const double told_m =
+          control::obstacle_of(loop_.answers()[i], control::BlindLayer::ignored).distance_m.value_or(0);
       nearest_m = std::min({settings_.rho_m, told_m, nearest_m.value_or(told_m)});
     }
   }

@@ -14,7 +14,9 @@ Rig with_width(Rig rig, int width_px) {
     camera.intrinsics.cx_px *= scale;
     camera.intrinsics.cy_px *= scale;
     if (camera.margins && !camera.sensor.empty()) {
+      const double smallest_obstacle_m = camera.margins->smallest_obstacle_m;
       camera.margins = sensor_margins(sensor_model(camera.sensor), camera.intrinsics, camera.metres_per_unit);
+      camera.margins->smallest_obstacle_m = smallest_obstacle_m;
     }
   }
   return rig;

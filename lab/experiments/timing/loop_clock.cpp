@@ -35,6 +35,9 @@ class TimedEvaluator final : public DistanceEvaluator {
   explicit TimedEvaluator(DistanceEvaluator& evaluator) : evaluator_(evaluator) {}
   [[nodiscard]] std::string_view name() const noexcept override { return evaluator_.name(); }
   [[nodiscard]] std::size_t camera_count() const noexcept override { return evaluator_.camera_count(); }
+  [[nodiscard]] double image_time_s(std::size_t camera) const noexcept override {
+    return evaluator_.image_time_s(camera);
+  }
   FrameUpdate update(std::size_t camera, const Frame& frame) noexcept override {
     return evaluator_.update(camera, frame);
   }

@@ -39,7 +39,7 @@ TEST(Registry, NamesAreDistinctAndUnknownOnesListTheRest) {
   }
   const std::string message = test::thrown_message([] { (void)experiment("shado"); });
   EXPECT_THAT(message, HasSubstr("'shado'"));
-  EXPECT_THAT(message, HasSubstr("shadow, hidden-hand, interference, cameras"));
+  EXPECT_THAT(message, HasSubstr("shadow, hidden-hand, blind-layer, self-filter, interference, cameras"));
 }
 
 TEST(Registry, OptionsOutOfRangeAreRefused) {

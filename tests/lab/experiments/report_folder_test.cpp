@@ -18,6 +18,8 @@ void small_run(const Options& options, ExperimentReport& report) {
   report.headline("It is 3 mm.");
   report.figures()["length_m"] = 0.003;
   report.picture("small.png", report::Canvas(20, 10), "nothing");
+  report.frame(report::Canvas(20, 10));
+  report.frame(report::Canvas(20, 10));
 }
 
 void failing_run(const Options& options, ExperimentReport& report) {
@@ -43,6 +45,8 @@ TEST(ExperimentReport, HoldsFiguresPicturesAndWhatWasRun) {
   EXPECT_EQ(json["about"]["started"].get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
   EXPECT_THAT(test::read_bytes(folder / "report/report.md"), HasSubstr("![small.png](small.png)"));
   EXPECT_THAT(test::read_bytes(folder / "report/small.png"), HasSubstr("PNG"));
+  EXPECT_THAT(test::read_bytes(folder / "report/frame-0002.png"), HasSubstr("PNG"));
+  EXPECT_THAT(text, HasSubstr("small.png, frame-0001.png to frame-0002.png"));
 }
 
 TEST(ExperimentReport, NothingIsLeftWhereTheExperimentFails) {
