@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   add_experiment_command(app);
   add_speed_command(app);
   add_campaign_command(app);
+  add_worlds_command(app);
   add_recordings_command(app);
   CLI::App* const letter = app.add_subcommand("letter", "the letter's evaluation on the depth grid: rate, errors");
   letter->require_subcommand(1);
@@ -25,12 +26,15 @@ int main(int argc, char** argv) {
   add_letter_errors_command(*letter);
   add_map_storages_command(app);
   add_image_in_command(app);
+  add_memory_in_command(app);
   add_robot_removal_command(app);
   add_control_cycle_command(app);
   add_worst_cases_command(app);
+  add_growth_command(app);
   CLI::App* const workcell = app.add_subcommand("workcell", "the simulated workcell: rate, pictures");
   workcell->require_subcommand(1);
   add_workcell_rate_command(*workcell);
   add_workcell_pictures_command(*workcell);
+  add_pictures_command(app);
   return depthgrid::program::run_command_line(app, argc, argv);
 }

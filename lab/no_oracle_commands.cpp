@@ -20,6 +20,7 @@ void add_absent(CLI::App& app, const std::string& name) {
 
 void add_speed_command(CLI::App& app) { add_absent(app, "speed"); }
 void add_campaign_command(CLI::App& app) { add_absent(app, "campaign"); }
+void add_worlds_command(CLI::App& app) { add_absent(app, "worlds"); }
 void add_letter_errors_command(CLI::App& letter) { add_absent(letter, "errors"); }
 
 }  // namespace depthgrid::lab

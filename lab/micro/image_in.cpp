@@ -48,7 +48,7 @@ Rig rig_of_size(int cameras, int width_px, int height_px) {
   return rig;
 }
 
-views::Settings settings_for(std::size_t cameras) {
+views::Settings settings_for(std::size_t cameras, double smallest_obstacle_m) {
   views::Settings settings;
   settings.space = views::BoxSpace{{-1.5, -1.5, 0}, {1.5, 1.5, 2}};
   settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0};
@@ -56,6 +56,7 @@ views::Settings settings_for(std::size_t cameras) {
   for (auto& margins : settings.margins) {
     margins.sensor = noise_margin();
     margins.sensor.lateral_px = 1;
+    margins.smallest_obstacle_m = smallest_obstacle_m;
   }
   settings.v_max_m_s = 1.6;
   return settings;
@@ -63,8 +64,8 @@ views::Settings settings_for(std::size_t cameras) {
 
 /// Each camera's images in turn; the snapshot of the frame set before is held, as by a thread that asks.
 Samples measure(const Rig& rig, int frame_sets, int repetitions,
-                const std::function<std::span<const Frame>(int)>& frames, bool with_robot) {
-  views::ViewStore store(rig, settings_for(rig.cameras.size()));
+                const std::function<std::span<const Frame>(int)>& frames, bool with_robot, double smallest_obstacle_m) {
+  views::ViewStore store(rig, settings_for(rig.cameras.size(), smallest_obstacle_m));
   std::optional<views::Snapshot> held;
   Samples times_ms;
   for (int repetition = -1; repetition < repetitions; ++repetition) {
@@ -88,7 +89,17 @@ Samples measure(const Rig& rig, int frame_sets, int repetitions,
   return times_ms;
 }
 
-void measure_size(int width_px, int height_px, int cameras, int frame_sets, int repetitions) {
+struct ImageInOptions {
+  int cameras = kWorkloadCameras;
+  int sets = 4;
+  int repetitions = 100;
+  double smallest_obstacle_m = 0;
+};
+
+void measure_size(int width_px, int height_px, const ImageInOptions& options) {
+  const int cameras = options.cameras;
+  const int frame_sets = options.sets;
+  const int repetitions = options.repetitions;
   const Rig rig = rig_of_size(cameras, width_px, height_px);
   const Workload clean(rig, frame_sets, kWorkloadRobotPadding);
   const Workload padded(rig, frame_sets, kNoisyRobotPadding);
@@ -100,19 +111,14 @@ void measure_size(int width_px, int height_px, int cameras, int frame_sets, int 
       const bool noise = content == Content::noisy_robot;
       const Samples times_ms = measure(
           part, frame_sets, repetitions * cameras / count,
-          [&](int set) { return noise ? noisy.frames(set) : clean.frames(set); }, content != Content::no_robot);
+          [&](int set) { return noise ? noisy.frames(set) : clean.frames(set); }, content != Content::no_robot,
+          options.smallest_obstacle_m);
       std::printf("| %d x %d | %d | %s | %.3f | %.3f | %.3f |\n", width_px, height_px, count, name_of(content),
                   times_ms.median(), times_ms.quantile(0.999), times_ms.largest());
       std::fflush(stdout);
     }
   }
 }
-
-struct ImageInOptions {
-  int cameras = kWorkloadCameras;
-  int sets = 4;
-  int repetitions = 100;
-};
 
 }  // namespace
 
@@ -129,12 +135,15 @@ void add_image_in_command(CLI::App& app) {
   command->add_option("--repetitions", options->repetitions, "how often the frame sets are taken in")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command->add_option("--smallest-obstacle", options->smallest_obstacle_m, "smallest obstacle, metres")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
   command->callback([options] {
     std::cout << report::machine_line() << "\n\n"
               << "| image | cameras | content | median ms | 99.9 % | maximum |\n|---|---|---|---|---|---|\n"
               << std::flush;
-    measure_size(640, 480, options->cameras, options->sets, options->repetitions);
-    measure_size(1280, 720, options->cameras, options->sets, options->repetitions);
+    measure_size(640, 480, *options);
+    measure_size(1280, 720, *options);
   });
 }
 

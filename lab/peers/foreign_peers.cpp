@@ -1,5 +1,6 @@
 #include "lab/peers/edt_peer.hpp"
 #include "lab/peers/fcl_peer.hpp"
+#include "lab/peers/hull_peer.hpp"
 #include "lab/peers/nanoflann_peer.hpp"
 #include "lab/peers/pcl_peer.hpp"
 #include "lab/peers/peer.hpp"
@@ -37,6 +38,12 @@ PeerKind fcl_kind(const char* name, double resolution_m, int most_cameras) {
           [resolution_m](const PeerSetting& setting) { return std::make_unique<FclPeer>(setting, resolution_m); }};
 }
 
+PeerKind hull_kind(const char* name, double voxel_m) {
+  return {name,  "convex hulls",
+          false, false,
+          8,     [voxel_m](const PeerSetting& setting) { return std::make_unique<HullPeer>(setting, voxel_m); }};
+}
+
 }  // namespace
 
 std::vector<PeerKind> foreign_peers() {
@@ -49,6 +56,7 @@ std::vector<PeerKind> foreign_peers() {
       pcl_kind("PCL KdTreeFLANN, full cloud", {Crop::full, 0}),
       pcl_kind("PCL KdTreeFLANN, cell", {Crop::cell, 0}),
       pcl_kind("PCL VoxelGrid 1 cm + KdTreeFLANN", {Crop::cell, 0.01}),
+      hull_kind("PCL clusters, hulls + FCL", 0.02),
       edt_kind("OctoMap 5 cm + EDT", {0.05, History::kept, false}, 8),
       edt_kind("OctoMap 5 cm + EDT, unknown occupied", {0.05, History::fresh, true}, 8),
       edt_kind("OctoMap 2 cm + EDT", {0.02, History::kept, false}, 2),

@@ -1,3 +1,4 @@
+#include "lab/peers/bubble_peer.hpp"
 #include "lab/peers/cloud_scan_peer.hpp"
 #include "lab/peers/grid_peer.hpp"
 #include "lab/peers/lattice_peer.hpp"
@@ -43,6 +44,12 @@ PeerKind ours(const char* name, int lateral_px) {
           }};
 }
 
+PeerKind bubbles(const char* name) {
+  return {name,  "people by a tracker",
+          false, false,
+          8,     [](const PeerSetting& setting) { return std::make_unique<BubblePeer>(setting); }};
+}
+
 }  // namespace
 
 std::vector<PeerKind> own_peers() {
@@ -62,6 +69,7 @@ std::vector<PeerKind> own_peers() {
       cloud_scan("scan of the full cloud", Crop::full),
       cloud_scan("scan of the cell's cloud", Crop::cell),
       cloud_scan("scan of the arm box's cloud", Crop::region),
+      bubbles("bubbles around people"),
   };
 }
 

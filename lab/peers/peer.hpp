@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/frame.hpp"
 #include "depthgrid/core/margin.hpp"
 #include "depthgrid/core/rig.hpp"
@@ -31,6 +32,8 @@ struct PeerSetting {
   double rho_m = 0.4;   ///< distances beyond it need not be found
   SensorMargin sensor;  ///< only peers that know margins use them
   PoseMargin pose;
+  /// Where the people really are at a frame's time, world frame: for those that stand on a tracker, at its best.
+  std::function<std::vector<Capsule>(double time_s)> people_world;
 };
 
 /// Robot pixels, those whose depth lies in the robot's interval, are no obstacle to any peer. Not thread-safe.

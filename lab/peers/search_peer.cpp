@@ -14,6 +14,7 @@ views::Settings search_settings(const PeerSetting& setting, double resolution_m)
   margins.sensor = setting.sensor;
   margins.translation_m = setting.pose.translation_m;
   margins.rotation_rad = setting.pose.rotation_rad;
+  margins.smallest_obstacle_m = 0;
   settings.margins.assign(setting.rig.cameras.size(), margins);
   settings.rho_m = setting.rho_m;
   settings.resolution_m = resolution_m;

@@ -14,12 +14,14 @@ constexpr double kDegree_rad = std::numbers::pi / 180;
 CameraMargins no_margin(int lateral_px) {
   CameraMargins margins;
   margins.sensor.lateral_px = lateral_px;
+  margins.smallest_obstacle_m = 0;
   return margins;
 }
 
 CameraMargins kinect_margin() {
   CameraMargins margins;
   margins.sensor = sensor_model("kinect_v1").margin;
+  margins.smallest_obstacle_m = 0;
   return margins;
 }
 

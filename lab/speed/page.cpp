@@ -1,6 +1,5 @@
 #include "lab/speed/page.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "lab/speed/page_parts.hpp"
 #include "lab/speed/page_text.hpp"
 #include "report/markdown_table.hpp"
+#include "report/marked_page.hpp"
 
 namespace depthgrid::lab {
 namespace {
@@ -70,11 +70,10 @@ std::string summary(const std::string& images, const Report& report) {
   page << kSummaryIntroduction;
   write_about(page, report);
   write_cycle(page, report);
-  const std::vector<Goal> all = goals(report);
-  const auto missed = std::count_if(all.begin(), all.end(), [](const Goal& goal) { return goal.missed(); });
-  page << missed << " of " << all.size() << kSummaryGoals;
+  page << kSummaryCycle;
   write_peers(page, report);
-  page << kSummaryPeers << "![Time against the number of cameras](" << images << "/benchmark-cameras.png)\n";
+  page << kSummaryPeers << "![Time against the number of cameras](" << images << "/benchmark-cameras.png)\n\n"
+       << kSummaryGoals;
   return page.str();
 }
 
@@ -82,11 +81,9 @@ std::string details(const std::string& images, const Report& report) {
   std::ostringstream page;
   page << kDetailsIntroduction;
   write_about(page, report);
-  const std::vector<Goal> all = goals(report);
-  write_goals(page, all);
-  write_misses(page, all, report);
   write_ours(page, report);
   write_side_by_side(page, report);
+  write_work(page, report);
   page << "## Plots\n\n";
   for (const auto& [name, text] : {std::pair{"cameras", "Time against the number of cameras"},
                                    {"accuracy", "Accuracy against time"},
@@ -100,6 +97,16 @@ std::string details(const std::string& images, const Report& report) {
   return page.str();
 }
 
+/// The part of docs/goals.md that is measured here; a page of nothing else where there is none.
+void write_goals_between(const std::filesystem::path& page, const Report& report) {
+  constexpr const char* kBegin = "<!-- goals of the search: begin -->";
+  constexpr const char* kEnd = "<!-- goals of the search: end -->";
+  if (!std::filesystem::exists(page)) {
+    files::write_text_file(page, std::string(kBegin) + "\n" + kEnd + "\n");
+  }
+  report::write_between(page, kBegin, kEnd, goals_text(goals(report)));
+}
+
 }  // namespace
 
 void write_page(const std::string& file, const std::string& images, const Report& report) {
@@ -111,6 +118,7 @@ void write_page(const std::string& file, const std::string& images, const Report
   files::write_text_file(file, summary(images, report));
   files::write_text_file(folder / "benchmark-search.md",
                          details(plots.is_absolute() ? images : plots.lexically_relative("docs").string(), report));
+  write_goals_between(folder / "goals.md", report);
 }
 
 }  // namespace depthgrid::lab

@@ -1,4 +1,5 @@
-// BENCHMARK.md, one screen, and docs/benchmark-search.md with everything, from the records of one run.
+// BENCHMARK.md, one screen, docs/benchmark-search.md with everything, and the search's part of docs/goals.md, from the
+// records of one run.
 #pragma once
 
 #include <string>
@@ -7,8 +8,8 @@
 
 namespace depthgrid::lab {
 
-/// Writes `file`, and docs/benchmark-search.md beside it. `images` is the plots' folder as seen from `file`. Throws
-/// Error when one cannot be written.
+/// Writes `file`, and beside it docs/benchmark-search.md and the marked part of docs/goals.md. `images` is the plots'
+/// folder as seen from `file`. Throws Error when one cannot be written.
 void write_page(const std::string& file, const std::string& images, const Report& report);
 
 }  // namespace depthgrid::lab

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <string>
 #include <vector>
 
 #include "lab/speed/goals.hpp"
@@ -9,9 +10,10 @@
 
 namespace depthgrid::lab {
 
-void write_goals(std::ostream& page, const std::vector<Goal>& all);
-/// Where the time of what was missed goes, as far as counts tell.
-void write_misses(std::ostream& page, const std::vector<Goal>& all, const Report& report);
+/// For docs/goals.md.
+std::string goals_text(const std::vector<Goal>& all);
+/// Where the time goes, as far as counts tell.
+void write_work(std::ostream& page, const Report& report);
 /// The search's own figures.
 void write_ours(std::ostream& page, const Report& report);
 /// All peers' tables, and what is quicker than ours.

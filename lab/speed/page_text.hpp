@@ -6,18 +6,17 @@ namespace depthgrid::lab {
 inline constexpr const char* kSummaryIntroduction = R"(# Benchmark
 
 The search on a simulated cell: an arm, two people, depth cameras of 640 x 480 pixels, nine control points, rho = 0.4 m, resolution
-5 mm, one core. Everything else is in [docs/benchmark-search.md](docs/benchmark-search.md): how it was measured, all goals and
-peers, errors, frames made to be slow; the grid alone in [docs/benchmark.md](docs/benchmark.md).
+5 mm, one core. Everything else is in [docs/benchmark-search.md](docs/benchmark-search.md): how it was measured, all peers,
+errors, frames made to be slow; the grid alone in [docs/benchmark.md](docs/benchmark.md).
 
 Made by `./scripts/benchmark` from one run; all numbers: [lab/results/benchmark.json](lab/results/benchmark.json).
 
 )";
 
-/// After the number of goals that are missed.
-inline constexpr const char* kSummaryGoals = R"( goals are missed on at least one of these workloads:
-[docs/benchmark-search.md](docs/benchmark-search.md#goals).
+inline constexpr const char* kSummaryGoals =
+    "Which goals were set before, which are reached and which are missed: [docs/goals.md](docs/goals.md).\n";
 
-## Beside what would be used instead
+inline constexpr const char* kSummaryCycle = R"(## Beside what would be used instead
 
 The cycle is everything from the 16-bit images to nine distances. Each row was measured in turns with ours, so compare ratios,
 not times of different rows or tables.
@@ -33,7 +32,8 @@ space answers another question, and a tree answers it quickly once it is built.
 inline constexpr const char* kDetailsIntroduction = R"(# Benchmark of the search
 
 Made by `./scripts/benchmark` from one run; all numbers: [lab/results/benchmark.json](../lab/results/benchmark.json). One screen of
-it: [BENCHMARK.md](../BENCHMARK.md). The grid evaluators alone: [benchmark.md](benchmark.md).
+it: [BENCHMARK.md](../BENCHMARK.md). The goals and what is missed of them: [goals.md](goals.md). The grid evaluators alone:
+[benchmark.md](benchmark.md).
 
 )";
 

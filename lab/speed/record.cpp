@@ -55,17 +55,20 @@ void write_json(const std::string& file, const Report& report) {
 }
 
 Report read_json(const std::string& file) {
-  const Json json = read_json_file(file, "report of the benchmark", {"about", "records"});
-  Report report;
-  json["about"].get_to(report.about);
-  for (const Json& row : json["records"]) {
-    Record record{row.at("group"), row.at("name"), {}, row.at("texts")};
-    for (const auto& [key, value] : row.at("numbers").items()) {
-      record.numbers[key] = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+  constexpr const char* kWhat = "report of the benchmark";
+  const Json json = read_json_file(file, kWhat, {"about", "records"});
+  return taken_apart(file, kWhat, [&json] {
+    Report report;
+    json["about"].get_to(report.about);
+    for (const Json& row : json["records"]) {
+      Record record{row.at("group"), row.at("name"), {}, row.at("texts")};
+      for (const auto& [key, value] : row.at("numbers").items()) {
+        record.numbers[key] = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+      }
+      report.records.push_back(std::move(record));
     }
-    report.records.push_back(std::move(record));
-  }
-  return report;
+    return report;
+  });
 }
 
 }  // namespace depthgrid::lab

@@ -102,6 +102,7 @@ PeerSetting Stage::setting() const {
   setting.cell = workload_cell();
   setting.rho_m = kRho;
   setting.sensor.lateral_px = 0;
+  setting.people_world = workload_people;
   return setting;
 }
 

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "depthgrid/core/blind_layer.hpp"
 #include "depthgrid/core/error.hpp"
 
 namespace depthgrid::lab {
@@ -54,29 +55,6 @@ void add_table(Scene& scene) {
   scene.add(box_at({1.25, 0.95, 0.25}, {0.5, 0.4, 0.5}, 0.4));  // on the floor
 }
 
-/// Two people on both sides of the table, each with one hand near the arm's front and one near its upper arm.
-void add_people(Scene& scene, double time_s) {
-  simulation::PersonPose left;
-  left.feet_world = {0.40 + 0.03 * wave(time_s, 1.7, 0.1), 0.80, 0};
-  left.heading_rad = -1.75;
-  left.lean_rad = 0.22 + 0.05 * wave(time_s, 1.3, 0.4);
-  left.left_fingertips_world = {0.62, 0.20 + 0.10 * wave(time_s, 1.0, 0.2), 1.05 + 0.05 * wave(time_s, 0.7, 0.0)};
-  left.right_fingertips_world = {0.22, 0.225 + 0.07 * wave(time_s, 1.1, 0.6), 1.33 + 0.04 * wave(time_s, 0.8, 0.3)};
-
-  simulation::PersonPose right;
-  right.feet_world = {0.25, -0.82 + 0.03 * wave(time_s, 1.9, 0.0), 0};
-  right.heading_rad = 1.45;
-  right.lean_rad = 0.25 + 0.04 * wave(time_s, 1.5, 0.7);
-  right.left_fingertips_world = {0.10, -0.245 + 0.10 * wave(time_s, 1.2, 0.5), 1.18 + 0.05 * wave(time_s, 0.9, 0.1)};
-  right.right_fingertips_world = {0.58, -0.235 + 0.13 * wave(time_s, 1.0, 0.8), 1.12 + 0.04 * wave(time_s, 1.2, 0.5)};
-
-  for (const simulation::PersonPose& pose : {left, right}) {
-    for (const Capsule& part : simulation::person(pose)) {
-      scene.add(part);
-    }
-  }
-}
-
 }  // namespace
 
 Rig workload_rig(int cameras) {
@@ -108,11 +86,37 @@ simulation::Arm workload_arm(double time_s) noexcept {
                           1.35 + 0.15 * wave(time_s, 1.0, 0.1), 0.0, -0.5 + 0.2 * wave(time_s, 0.9, 0.5), 0.0});
 }
 
+// On both sides of the table, each with one hand near the arm's front and one near its upper arm.
+std::vector<Capsule> workload_people(double time_s) {
+  simulation::PersonPose left;
+  left.feet_world = {0.40 + 0.03 * wave(time_s, 1.7, 0.1), 0.80, 0};
+  left.heading_rad = -1.75;
+  left.lean_rad = 0.22 + 0.05 * wave(time_s, 1.3, 0.4);
+  left.left_fingertips_world = {0.62, 0.20 + 0.10 * wave(time_s, 1.0, 0.2), 1.05 + 0.05 * wave(time_s, 0.7, 0.0)};
+  left.right_fingertips_world = {0.22, 0.225 + 0.07 * wave(time_s, 1.1, 0.6), 1.33 + 0.04 * wave(time_s, 0.8, 0.3)};
+
+  simulation::PersonPose right;
+  right.feet_world = {0.25, -0.82 + 0.03 * wave(time_s, 1.9, 0.0), 0};
+  right.heading_rad = 1.45;
+  right.lean_rad = 0.25 + 0.04 * wave(time_s, 1.5, 0.7);
+  right.left_fingertips_world = {0.10, -0.245 + 0.10 * wave(time_s, 1.2, 0.5), 1.18 + 0.05 * wave(time_s, 0.9, 0.1)};
+  right.right_fingertips_world = {0.58, -0.235 + 0.13 * wave(time_s, 1.0, 0.8), 1.12 + 0.04 * wave(time_s, 1.2, 0.5)};
+
+  std::vector<Capsule> limbs;
+  for (const simulation::PersonPose& pose : {left, right}) {
+    const auto parts = simulation::person(pose);
+    limbs.insert(limbs.end(), parts.begin(), parts.end());
+  }
+  return limbs;
+}
+
 simulation::Scene workload_scene(double time_s, RobotInView robot) {
   Scene scene;
   add_room(scene);
   add_table(scene);
-  add_people(scene, time_s);
+  for (const Capsule& limb : workload_people(time_s)) {
+    scene.add(limb);
+  }
   if (robot == RobotInView::masked) {
     for (const Capsule& link : workload_arm(time_s).links) {
       scene.add(link, Body::robot);
@@ -175,7 +179,8 @@ Workload::Workload(const Rig& rig, int frame_sets, double robot_padding_m,
       frame.depth = depth_view(std::span<const std::uint16_t>(kept.depth_mm), camera.intrinsics.width_px,
                                camera.intrinsics.height_px, camera.metres_per_unit);
       if (robot == RobotInView::masked) {
-        frame.robot = {kept.robot_near_m.data(), kept.robot_far_m.data(), camera.intrinsics.width_px};
+        frame.robot = with_layer({kept.robot_near_m.data(), kept.robot_far_m.data(), camera.intrinsics.width_px},
+                                 camera.intrinsics, robot_padding_m);
       }
       frame.time_s = time_s(set);
       frames_.push_back(frame);

@@ -37,6 +37,9 @@ enum class RobotInView : std::uint8_t { masked, removed };
 /// The arm at a time in seconds.
 [[nodiscard]] simulation::Arm workload_arm(double time_s) noexcept;
 
+/// The limbs of both people at a time in seconds, world frame.
+[[nodiscard]] std::vector<Capsule> workload_people(double time_s);
+
 /// Nine control points evenly spaced on the arm's axis from above the shoulder to the tool's tip.
 [[nodiscard]] std::vector<Eigen::Vector3d> workload_points(double time_s);
 
