@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as a depth grid map's file. Either they are refused with an Error of one line, or every
-// look-up in the map stays within its tables and the images.
+// libFuzzer target: any bytes as a depth grid map's file. Either they are refused with an Error of one line that
+// prints, or every look-up in the map stays within its tables and the images.
 //
 // The first byte of an input says which of the checks that random bytes never pass are made to fit first, so that the
 // fuzzer gets past them: 1 fingerprint, 2 sizes in the head and of the file, 4 end mark. The checksum is not compared.
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/grid/map/map_file.hpp"
 
 namespace {
@@ -144,7 +145,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       look_up(std::get<grid::PixelListMap>(map));
     }
   } catch (const Error& error) {
-    require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+    require(depthgrid::is_printable(error.what()));
   }
   return 0;
 }

@@ -1,4 +1,5 @@
-// What the fuzz targets of meshes share: any bytes give an Error of one line, or corners that are all finite.
+// What the fuzz targets of meshes share: any bytes give an Error of one line that prints, or corners that are all
+// finite.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +8,7 @@
 #include <string_view>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/robot/mesh_formats.hpp"
 
 inline int try_mesh(const std::uint8_t* data, std::size_t size, std::string_view ending) {
@@ -21,7 +23,7 @@ inline int try_mesh(const std::uint8_t* data, std::size_t size, std::string_view
       std::abort();
     }
   } catch (const depthgrid::Error& error) {
-    if (std::string_view(error.what()).find('\n') != std::string_view::npos) {
+    if (!depthgrid::is_printable(error.what())) {
       std::abort();
     }
   }

@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as a rig file. Either they are refused with an Error of one line, or they give a rig that
-// can be written and read back.
+// libFuzzer target: any bytes as a rig file. Either they are refused with an Error of one line that prints, or they
+// give a rig that can be written and read back.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/files/rig_file.hpp"
 
 namespace {
@@ -41,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     file = depthgrid::files::parse_rig(text, "fuzz");
   } catch (const depthgrid::Error& error) {
-    require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+    require(depthgrid::is_printable(error.what()));
     return 0;
   }
   check_round_trip(file);

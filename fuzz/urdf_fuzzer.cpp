@@ -1,5 +1,5 @@
-// libFuzzer target: any bytes as a URDF file. Either they are refused with an Error of one line, or they give a robot
-// whose links stand at finite poses, with capsules where it has no meshes.
+// libFuzzer target: any bytes as a URDF file. Either they are refused with an Error of one line that prints, or they
+// give a robot whose links stand at finite poses, with capsules where it has no meshes.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/urdf.hpp"
 
@@ -51,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     check(RobotModel(parse_urdf(std::string(reinterpret_cast<const char*>(data), size), "folder/fuzz.urdf", options)));
   } catch (const depthgrid::Error& error) {
-    require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+    require(depthgrid::is_printable(error.what()));
   }
   return 0;
 }
