@@ -75,8 +75,9 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
     camera.T_world_camera = look_at(place, {0.3, 0.2, 1.1});
     camera.rule = sensor.rule;
     camera.margins = sensor_margins(sensor, camera.intrinsics, camera.metres_per_unit);
-    camera.margins->translation_m = 0.005;  // calibration: where the camera stands
-    camera.margins->rotation_rad = 0.002;   // and looks
+    camera.margins->translation_m = 0.005;                             // calibration: where the camera stands
+    camera.margins->rotation_rad = 0.002;                              // and looks
+    camera.margins->smallest_obstacle_m = sensor.smallest_obstacle_m;  // what is smaller may be missed
   }
 
   // Where distances come from. What counts as an obstacle has no default (docs/search.md).
@@ -88,7 +89,10 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   what.resolution_m = 0.01;
   // Until an image is here, until the next one, until the next evaluation: so old is what rho is asked of.
   const double greatest_age_s = 0.02 + 1.0 / 30 + settings.evaluate_every * period_s;
-  what.rho_m = views::surveillance_radius_m(rho_m, what.v_max_m_s, greatest_age_s);
+  // YOURS: how thick the layer around the arm is at most in which nothing is seen: loop.report().blind_m. The arm keeps
+  // this layer, not only itself, away from what it sees.
+  const double blind_m = 0.18;
+  what.rho_m = views::surveillance_radius_m(rho_m, what.v_max_m_s, greatest_age_s, blind_m);
   // The first part, the tip, gets the direction that it is repelled along. YOURS: a budget of time (docs/avoidance.md).
   search::SearchEvaluator evaluator(rig, what, {.directions = 1});
 
@@ -97,7 +101,9 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   // itself; what is nearer to it is not seen (docs/robot.md). The time error is that of the clocks, half the exposure
   // too.
   robot::JointHistory history(model.joints().size(), 1000, 0.02, 0.01);
-  robot::FrameIntake intake(rig, robot, history, {.removal = {.padding_m = 0.085}, .time_error_s = 0.005});
+  robot::ExposureSettings exposure{.removal = {.padding_m = 0.085}, .time_error_s = 0.005};
+  exposure.joint_accelerations.assign(model.joints().size(), 10.0);  // YOURS: the greatest, protective stops included
+  robot::FrameIntake intake(rig, robot, history, exposure);
 
   // YOURS: the arm's driver, a class derived from control::RobotPort: read() and write() (docs/avoidance.md).
   control::SimulatedArm arm(limits, period_s, q_start);
@@ -106,18 +112,22 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
   bool working = loop.start(port);
   Vector3d tip_before_world = start_world;
   const auto print = [&] {
-    const auto distance_m = [](const Answer& answer) { return control::obstacle_of(answer).distance_m.value_or(0); };
-    const auto nearer = [&](const auto& a, const auto& b) { return distance_m(a) < distance_m(b); };
+    // What the arm acts upon: from the surface of the blind layer, or nothing.
+    const auto clear_m = [](const Answer& answer) {
+      return control::obstacle_of(answer, control::BlindLayer::kept_clear).distance_m.value_or(0);
+    };
+    const auto nearer = [&](const auto& a, const auto& b) { return clear_m(a) < clear_m(b); };
     const auto nearest = std::min_element(loop.answers().begin(), loop.answers().end(), nearer);
     const std::size_t link = settings.parts[static_cast<std::size_t>(nearest - loop.answers().begin())].link;
     std::printf("%.1f s  ", loop.report().time_s);
     if (std::isnan(nearest->distance_now_m)) {
       std::printf("no images yet, distances are unknown");
-    } else if (distance_m(*nearest) < rho_m) {  // "measured" is a surface, the other states are space not seen free
-      std::printf("%s is %.3f m from the nearest obstacle (%s)", model.links()[link].name.c_str(), distance_m(*nearest),
-                  std::string(to_string(nearest->nearest.state)).c_str());
+    } else if (clear_m(*nearest) < rho_m) {  // "measured" is a surface, the other states are space not seen free
+      std::printf("%s is %.3f m from the nearest obstacle (%s), of which %.3f m are blind",
+                  model.links()[link].name.c_str(), nearest->distance_now_m,
+                  std::string(to_string(nearest->nearest.state)).c_str(), loop.report().blind_m);
     } else {
-      std::printf("nothing is nearer than %.1f m", rho_m);
+      std::printf("nothing is nearer than %.1f m to the blind layer of %.3f m", rho_m, loop.report().blind_m);
     }
     std::printf("; tip moves at %.3f m/s, repulsion asks for %.3f m/s; fastest joint %.2f rad/s\n",
                 (loop.report().end_effector_world - tip_before_world).norm() / period_s,
@@ -134,7 +144,7 @@ int run(const robot::RobotModel& model, const std::string& tip_name) {
     tip_before_world = loop.report().end_effector_world;
     // The cameras' thread, when images have come, each with its own time. Here a ball comes for a second, and goes.
     if (k % 17 == 0) {
-      const Vector3d ball_world = start_world + Vector3d(0, 0.40 + 0.7 * std::abs(now_s - 1.0), 0);
+      const Vector3d ball_world = start_world + Vector3d(0, 0.40 + 0.9 * std::abs(now_s - 1.0), 0);
       const DepthImage first = image(rig.cameras[0], loop.parts_world(), ball_world);
       const DepthImage second = image(rig.cameras[1], loop.parts_world(), ball_world);
       const std::array<Frame, 2> seen{Frame{depth_view(first), {}, now_s}, {depth_view(second), {}, now_s}};

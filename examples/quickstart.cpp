@@ -1,7 +1,7 @@
 // Quick start: depth images from your own driver in, distances of robot links out, with threads. No file, no allocation
-// in the loop. With one thread SearchEvaluator does what store and search do here (README.md).
+// in the loop. With one thread SearchEvaluator does what store and search do here (evaluator_quickstart.cpp).
 //
-//   c++ -std=c++20 -O2 quickstart.cpp $(pkg-config --cflags eigen3) -ldepthgrid_search -ldepthgrid_core -lhwy
+//   c++ -std=c++20 -O2 quickstart.cpp $(pkg-config --cflags --libs depthgrid_search)
 //
 // or examples/consumer for CMake; docs/search.md says more about both.
 //
@@ -57,8 +57,9 @@ int run() {
   camera.metres_per_unit = 0.001;
   camera.rule = sensor.rule;  // readings outside 0.28 ... 3 m are no measurements
   camera.margins = depthgrid::sensor_margins(sensor, camera.intrinsics, camera.metres_per_unit);
-  camera.margins->translation_m = 0.005;  // calibration: where the camera stands
-  camera.margins->rotation_rad = 0.002;   // and looks
+  camera.margins->translation_m = 0.005;                             // calibration: where the camera stands
+  camera.margins->rotation_rad = 0.002;                              // and looks
+  camera.margins->smallest_obstacle_m = sensor.smallest_obstacle_m;  // what is smaller may be missed
 
   // 2. What counts as an obstacle. None of this has a default.
   views::Settings settings;

@@ -16,7 +16,7 @@ int main() try {
   const depthgrid::files::RigFile file = depthgrid::files::parse_rig(R"({
     "name": "cell", "depth": {"metres_per_unit": 0.001}, "cameras": [{
       "id": "front", "width": 320, "height": 240, "fx": 260.0, "fy": 260.0, "cx": 159.5, "cy": 119.5,
-      "sensor": "ideal",
+      "sensor": "ideal", "margins": {"smallest_obstacle_m": 0},
       "T_world_cam": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]})",
                                                                      "rig in consumer.cpp");
   views::Settings settings;
