@@ -193,6 +193,27 @@ TEST(Extremes, ErrorsOfOrientationGrowWithinEveryCube) {
   }
 }
 
+/// W is a thin bar along the optical axis, and only its far end lies in the obstacle set: the error there just reaches
+/// the wall. Boxes are wider than the bar and stay open, so that the ball around the last leaf alone decides.
+TEST(Extremes, ErrorsOfOrientationGrowUpToTheFarSideOfABall) {
+  constexpr double kRate = 0.5;
+  constexpr double kBeyond_m = 0.001;  // the error's reach beyond the wall, at the bar's end
+  constexpr double kHalf_m = 1e-4;
+  const Vector3d p(0, 0, 1.2);
+  for (int n = 0; n < 20; ++n) {
+    const double end_m = 1.3 + 0.001 * n;
+    OneCamera one = measured_only(static_cast<float>(end_m * (1 + kRate) - kBeyond_m), 96, 72, 30);
+    one.refer();
+    one.setup.settings.space = views::BoxSpace{{-kHalf_m, -kHalf_m, 1.1}, {kHalf_m, kHalf_m, end_m}};
+    one.setup.settings.resolution_m = 0.03;
+    one.setup.settings.margins[0].rotation_rad = kRate;
+    const Proximity nearest = Asker(one.setup).distance(Capsule::point(p)).nearest;
+    EXPECT_NE(nearest.state, ProximityState::beyond_rho) << "the bar ends at " << end_m;
+    EXPECT_LE(nearest.distance_m, end_m - p.z()) << "the bar ends at " << end_m;
+    EXPECT_GT(nearest.distance_m, 0) << "the bar ends at " << end_m;
+  }
+}
+
 /// Things of one pixel, many of which lie within the resolution.
 TEST(Extremes, AnyErrorOfOrientationFreesNothingButHidesNothing) {
   // Two cameras at the same place: one knows its orientation, the other does not.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "search/one_camera.hpp"
 #include "search/search_setup.hpp"
 
 namespace depthgrid::search {
@@ -312,6 +313,25 @@ TEST(Primitives, InOneCallKeepTheirBoundsAndRepeatToTheBit) {
       EXPECT_EQ(at_once[i].nearest.state, again[i].nearest.state) << to_text(primitives[i]);
     }
   });
+}
+
+TEST(Primitives, MayBeAsManyAsOneLikes) {
+  OneCamera one(2.0F);
+  one.setup.settings.rho_m = 1.5;  // the wall is within it
+  Random random(7);
+  std::vector<Capsule> primitives;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d a = Vector3d(0, 0, 1.4) + random.in_cube(0.3);
+    primitives.push_back(Capsule{a, a + random.in_cube(0.1), random.uniform(0, 0.05)});
+  }
+  Asker asker(one.setup);
+  const std::vector<Answer> answers = asker.distances(primitives);
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const Answer alone = asker.distance(primitives[i]);
+    ASSERT_GT(alone.nearest.distance_m, 0) << to_text(primitives[i]);
+    ASSERT_EQ(answers[i].nearest.distance_m, alone.nearest.distance_m) << i << ": " << to_text(primitives[i]);
+    ASSERT_EQ(answers[i].on_axis_world, alone.on_axis_world) << i << ": " << to_text(primitives[i]);
+  }
 }
 
 }  // namespace
