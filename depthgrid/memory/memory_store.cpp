@@ -13,14 +13,12 @@
 #include "depthgrid/memory/declarations.hpp"
 #include "depthgrid/memory/history.hpp"
 #include "depthgrid/memory/image_intake.hpp"
+#include "depthgrid/memory/one_writer.hpp"
 #include "depthgrid/memory/possible_space.hpp"
 #include "depthgrid/views/held_slots.hpp"
 
 namespace depthgrid::memory {
 namespace {
-
-/// How often a thread looks for images that came meanwhile. What is left waits for the next.
-constexpr int kRounds = 2;
 
 std::uint64_t next_version() noexcept {
   static std::atomic<std::uint64_t> last{0};
@@ -53,10 +51,7 @@ PossibleSpace first_space(const MemorySettings& settings) {
 // `newest` names the newest buffer. A snapshot loads it, adds one to that buffer's references, and loads it again; only
 // if it is still the same does it use the buffer. A writer fills a buffer that is not the newest and has no
 // references, then makes it the newest.
-//
-// There is one writer at a time: whoever finds `busy` false. The others leave a bit of `waiting` and go. A writer that
-// has made `busy` false looks at `waiting` once more, and a bit that is left after its look finds `busy` false: no
-// image is forgotten, unless the writer has had its rounds, and then the next image brings it along.
+// There is one writer at a time (OneWriter).
 struct MemoryStore::State {
   State(const views::ViewStore& views_in, const MemorySettings& settings_in, int held_snapshots)
       : views(views_in),
@@ -74,21 +69,17 @@ struct MemoryStore::State {
   /// For the writer: changes a copy of the newest space and publishes it. False where there is no buffer.
   template <class Change>
   bool write(Change&& change) noexcept {
-    const std::size_t slot = views::free_slot(references, slots.size(), newest.load());
-    if (slot == slots.size()) {
-      return false;
-    }
-    const PossibleSpace& before = slots[newest.load()];
-    PossibleSpace& space = slots[slot];
-    space.voxels.copy(before.voxels);
-    space.pending_m = before.pending_m;
-    space.time_s = before.time_s;
-    space.is_everything = before.is_everything;
-    space.impossible = before.impossible;
-    change(space);
-    space.version = next_version();
-    newest.store(static_cast<std::uint32_t>(slot));
-    return true;
+    return write_newest(newest, references, slots.size(), [&](std::size_t newest_slot, std::size_t slot) {
+      const PossibleSpace& before = slots[newest_slot];
+      PossibleSpace& space = slots[slot];
+      space.voxels.copy(before.voxels);
+      space.pending_m = before.pending_m;
+      space.time_s = before.time_s;
+      space.is_everything = before.is_everything;
+      space.impossible = before.impossible;
+      change(space);
+      space.version = next_version();
+    });
   }
 
   void look_at(std::uint32_t cameras) noexcept {
@@ -102,17 +93,31 @@ struct MemoryStore::State {
     }
   }
 
-  void look_at_waiting() noexcept {
-    for (int round = 0; round < kRounds && waiting.load() != 0; ++round) {
-      if (busy.exchange(true)) {
-        return;
+  /// For the writer. False where there is no buffer.
+  bool let_go(std::span<const Capsule> capsules, double distance_m, double time_s) noexcept {
+    const bool written = write([&](PossibleSpace& space) {
+      const double since_s = space.time_s - time_s;
+      if (is_finite(capsules) && std::isfinite(distance_m) && std::isfinite(since_s)) {
+        // The set is of the time of the newest image, which may be later.
+        put_in(capsules, distance_m + views.settings().v_max_m_s * std::max(0.0, since_s), space);
+      } else {
+        space.voxels.fill();
+        space.pending_m = 0;
+        space.is_everything = true;
       }
-      const std::uint32_t cameras = waiting.exchange(0);
-      if (cameras != 0) {
-        look_at(cameras);
+      if (std::isfinite(space.time_s)) {
+        history.note(space.voxels, space.time_s, false);
       }
-      busy.store(false);
+    });
+    if (written) {
+      intake.ignore_before(time_s);
+      released_s.store(std::max(released_s.load(), time_s));
     }
+    return written;
+  }
+
+  void look_at_waiting() noexcept {
+    writer.look_at_waiting([this](std::uint32_t cameras) { look_at(cameras); });
   }
 
   [[nodiscard]] std::uint32_t acquire() const noexcept {
@@ -126,10 +131,9 @@ struct MemoryStore::State {
   std::vector<PossibleSpace> slots;
   mutable views::SlotReferences references{};
   std::atomic<std::uint32_t> newest{0};
-  std::atomic<bool> busy{false};
-  std::atomic<std::uint32_t> waiting{0};  ///< cameras, a bit each
-  ImageIntake intake;                     ///< the writer's
-  History history;                        ///< written by the writer
+  OneWriter<std::atomic<bool>, std::atomic<std::uint32_t>> writer;
+  ImageIntake intake;  ///< the writer's
+  History history;     ///< written by the writer
   std::atomic<double> released_s{-std::numeric_limits<double>::infinity()};
   std::atomic<std::int64_t> images{0}, dropped{0}, impossible{0};
 };
@@ -147,35 +151,17 @@ void MemoryStore::take(std::size_t camera) noexcept {
     return;
   }
   const std::uint32_t bit = std::uint32_t{1} << camera;
-  if ((state_->waiting.fetch_or(bit) & bit) != 0) {
+  if (!state_->writer.leave(bit)) {
     ++state_->dropped;  // the one that waits is looked at no more: the camera has a newer one
   }
   state_->look_at_waiting();
 }
 
 bool MemoryStore::occupy(std::span<const Capsule> capsules, double distance_m, double time_s) noexcept {
-  if (state_->busy.exchange(true)) {
+  bool written = false;
+  if (!state_->writer.try_write([&] { written = state_->let_go(capsules, distance_m, time_s); })) {
     return false;
   }
-  const bool written = state_->write([&](PossibleSpace& space) {
-    const double since_s = space.time_s - time_s;
-    if (is_finite(capsules) && std::isfinite(distance_m) && std::isfinite(since_s)) {
-      // The set is of the time of the newest image, which may be later.
-      put_in(capsules, distance_m + state_->views.settings().v_max_m_s * std::max(0.0, since_s), space);
-    } else {
-      space.voxels.fill();
-      space.pending_m = 0;
-      space.is_everything = true;
-    }
-    if (std::isfinite(space.time_s)) {
-      state_->history.note(space.voxels, space.time_s, false);
-    }
-  });
-  if (written) {
-    state_->intake.ignore_before(time_s);
-    state_->released_s.store(std::max(state_->released_s.load(), time_s));
-  }
-  state_->busy.store(false);
   state_->look_at_waiting();
   return written;
 }

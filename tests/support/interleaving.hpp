@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace depthgrid::test {
@@ -59,6 +60,18 @@ class SteppedAtomic {
   [[nodiscard]] T load() const noexcept {
     step();
     return value_;
+  }
+  void store(T value) noexcept {
+    step();
+    value_ = value;
+  }
+  T exchange(T value) noexcept {
+    step();
+    return std::exchange(value_, value);
+  }
+  T fetch_or(T bits) noexcept {
+    step();
+    return std::exchange(value_, static_cast<T>(value_ | bits));
   }
   T fetch_add(T more) noexcept {
     step();
