@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
@@ -378,10 +379,16 @@ TEST(Corrected, MarginsOnlyBringObstaclesNearer) {
   settings.sensor.constant_m = 0.03;
   const double sensor = distance(settings);
   EXPECT_NEAR(ideal - sensor, 0.03, 1e-6);
-  settings.pose.translation_m = 0.02;
-  const double pose = distance(settings);
-  EXPECT_LE(pose, sensor - 0.02 + 1e-6);
-  EXPECT_GE(pose, sensor - 0.02 - kCells.step_m - 1e-6) << "at most one cell more";
+  // Each part of e counts, and once.
+  const double turned_m = 1.97 - 1.97 / (1 + 0.01);  // where z + 0.01 z reaches the wall less the sensor's margin
+  for (const auto& [pose, nearer_m] :
+       {std::pair{PoseMargin{0.02, 0, 0}, 0.02}, std::pair{PoseMargin{0, 0.01, 0}, turned_m},
+        std::pair{PoseMargin{0, 0, 0.02}, 0.02}}) {
+    settings.pose = pose;
+    const double erring = distance(settings);
+    EXPECT_LE(erring, sensor - nearer_m + 1e-6);
+    EXPECT_GE(erring, sensor - nearer_m - kCells.step_m - 1e-6) << "at most one cell more";
+  }
 }
 
 TEST(Evaluator, RefusesBadSettings) {

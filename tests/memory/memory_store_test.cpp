@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "depthgrid/memory/voxel_set.hpp"
 #include "memory/small_cell.hpp"
@@ -242,6 +243,18 @@ TEST(MemoryStore, CountsSurfacesWhereNothingCouldBe) {
   EXPECT_EQ(slow.store.count().impossible, 0);
   EXPECT_EQ(slow.store.snapshot().impossible().images, 0);
   EXPECT_TRUE(slow.may_hold({0, 0, 0.001}, 5.25));
+}
+
+// What is pending has reached a place already, though no voxel says so. One voxel of 25 mm lies between the far end of
+// the region and the surface's, and the sensor errs by 5 mm.
+TEST(MemoryStore, ASurfaceWithinWhatIsPendingIsPossible) {
+  for (const auto& [moved_m, possible] : {std::pair{0.018, false}, std::pair{0.022, true}}) {
+    Cell cell;
+    cell.see(kFar, 5);
+    cell.see(Wall(3.0F).put(70, 50, 90, 70, 1.16F), 5 + moved_m / kFastest);
+    EXPECT_TRUE(cell.may_hold({0, 0, 0.16}, 5 + moved_m / kFastest));
+    EXPECT_EQ(cell.store.count().impossible == 0, possible) << moved_m;
+  }
 }
 
 TEST(MemoryStore, DoesNotCountSinglePixels) {
