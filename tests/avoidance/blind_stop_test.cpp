@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "avoidance/flat_wall.hpp"
 #include "depthgrid/avoidance/avoidance_loop.hpp"
@@ -28,21 +29,23 @@ class TwoCameras final : public DistanceEvaluator {
   [[nodiscard]] std::string_view name() const noexcept override { return "two cameras"; }
   [[nodiscard]] std::size_t camera_count() const noexcept override { return 2; }
   [[nodiscard]] double image_time_s(std::size_t camera) const noexcept override {
-    return std::min(now_s_, frozen_from_s[camera]);
+    return std::min(frozen_from_s[camera], now_s_);  // NaN: there is no image
   }
   [[nodiscard]] FrameUpdate update(std::size_t, const Frame&) noexcept override { return {}; }
   [[nodiscard]] FrameUpdate update(std::size_t, const Frame&, const Pose&) noexcept override { return {}; }
   void evaluate(std::span<const Capsule> capsules, double now_s, std::span<Answer> answers) noexcept override {
     now_s_ = now_s;
     for (std::size_t i = 0; i < answers.size(); ++i) {
+      const double away_m = i < of_part_m.size() ? of_part_m[i] : distance_m;
       answers[i] = Answer{};
-      answers[i].nearest.distance_m = distance_m;
-      answers[i].nearest.nearest_world = capsules[i].a + Eigen::Vector3d(distance_m, 0, 0);
+      answers[i].nearest.distance_m = away_m;
+      answers[i].nearest.nearest_world = capsules[i].a + Eigen::Vector3d(away_m, 0, 0);
       answers[i].nearest.direction_world = Eigen::Vector3d::UnitX();
+      answers[i].hybrid_direction_world = Eigen::Vector3d::UnitX();
       answers[i].nearest.state = state;
-      answers[i].distance_now_m = distance_m;
+      answers[i].distance_now_m = away_m;
       answers[i].on_axis_world = capsules[i].a;
-      answers[i].blind_m = 0;
+      answers[i].blind_m = i < layer_of_part_m.size() ? layer_of_part_m[i] : 0;
     }
   }
   std::array<double, 2> frozen_from_s{1e9, 1e9};
@@ -53,6 +56,7 @@ class TwoCameras final : public DistanceEvaluator {
   }
 
   double distance_m = 5;
+  std::vector<double> of_part_m, layer_of_part_m;  ///< of the first parts, where they are others
   ProximityState state = ProximityState::measured;
   ImpossibleSurfaces found;
   Past remembered;
@@ -332,6 +336,53 @@ TEST_F(BlindStop, NamesThePartWithTheLeastRoom) {
   const double way_m = (at_world() - begin_world).norm();
   EXPECT_GT(way_m, 0.001);
   EXPECT_LE(way_m, reason.braking_m * 1.01);
+}
+
+TEST_F(BlindStop, NamesTheCameraThatNeverSentAnything) {
+  for (const std::size_t silent : {0U, 1U}) {
+    cameras_ = {};
+    cameras_.frozen_from_s[silent] = kNaN;
+    cameras_.frozen_from_s[1 - silent] = 1;
+    control::PolygonTask task(test::hexagon(model_));
+    AvoidanceLoop loop({model_}, task, cameras_, settings_);
+    control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+    ASSERT_TRUE(loop.start(arm));
+    ASSERT_TRUE(loop.cycle(arm, 3));
+    EXPECT_EQ(loop.report().lost_cameras, 2);
+    EXPECT_EQ(loop.report().reason.late_camera, std::optional<std::size_t>(silent));
+    EXPECT_TRUE(std::isnan(loop.report().reason.late_s));
+  }
+}
+
+TEST_F(BlindStop, TellsTheThickestLayer) {
+  control::PolygonTask task(test::hexagon(model_));
+  AvoidanceLoop loop({model_}, task, cameras_, settings_);
+  control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+  ASSERT_TRUE(loop.start(arm));
+  cameras_.layer_of_part_m = {0.01, 0.05, 0.02};
+  ASSERT_TRUE(loop.cycle(arm, 1));
+  EXPECT_EQ(loop.report().blind_m, 0.05);
+  cameras_.layer_of_part_m = {0.01, kNaN, 0.02};
+  ASSERT_TRUE(loop.cycle(arm, 2));
+  EXPECT_TRUE(std::isnan(loop.report().blind_m)) << "one is not known";
+}
+
+// The end effector's push and the body's limits begin at distances of their own.
+TEST_F(BlindStop, NamesAPartWithinTheRangeOfItsLaw) {
+  settings_.end_effector_limits = false;
+  settings_.controller.repulsion.rho_m = 0.6;
+  settings_.controller.body.rho_m = 0.3;
+  control::PolygonTask task(test::hexagon(model_));
+  AvoidanceLoop loop({model_}, task, cameras_, settings_);
+  control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+  ASSERT_TRUE(loop.start(arm));
+  cameras_.of_part_m = {5, 0.5};
+  ASSERT_TRUE(loop.cycle(arm, 1));
+  EXPECT_EQ(loop.report().reason.limit, MotionLimit::none) << "a part of the body";
+  cameras_.of_part_m = {0.5, 5};
+  ASSERT_TRUE(loop.cycle(arm, 2));
+  EXPECT_EQ(loop.report().reason.limit, MotionLimit::obstacle) << "the end effector";
+  EXPECT_EQ(loop.report().reason.part, std::optional<std::size_t>(0));
 }
 
 TEST_F(BlindStop, AgesAreLimited) {

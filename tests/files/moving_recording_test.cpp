@@ -77,6 +77,32 @@ TEST(MovingRecording, OfAWristCameraHasTheHandEyePose) {
       << "0.1 m along the flange's x, which is the world's y";
 }
 
+// By a pose a frame, too, and whichever cameras are chosen, in whichever order.
+TEST(MovingRecording, EveryCameraMovesWithItsOwnPosesAndHandEyePose) {
+  const TemporaryFolder folder;
+  const auto hand_eye = [](const std::string& x) {
+    return R"("T_body_cam": [[1, 0, 0, )" + x + "], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]";
+  };
+  for (const std::string id : {"a", "b"}) {
+    write_image(folder / (id + "0.png"), 1);
+    (void)folder.write(id + "0.txt", "0 -1 0 " + std::string(id == "a" ? "1" : "2") + "\n1 0 0 0\n0 0 1 0\n0 0 0 1\n");
+  }
+  const auto moving = [&](const std::string& id, const std::string& x) {
+    return camera(id, R"("depth_files": ")" + id + R"(%d.png", "pose_files": ")" + id + R"(%d.txt", )" + hand_eye(x));
+  };
+  (void)folder.write("rig.json", rig(R"("first": 0, "count": 1)", {moving("a", "0.1"), moving("b", "0.2")}));
+  const Eigen::Vector3d a(1, 0.1, 0);
+  const Eigen::Vector3d b(2, 0.2, 0);
+  const auto at = [&](const std::vector<std::string>& ids, std::size_t camera) {
+    RecordingOptions options;
+    options.camera_ids = ids;
+    return Eigen::Vector3d(Recording(folder.path(), options).T_world_camera(0, camera).translation());
+  };
+  EXPECT_TRUE(at({}, 0).isApprox(a) && at({}, 1).isApprox(b));
+  EXPECT_TRUE(at({"b"}, 0).isApprox(b));
+  EXPECT_TRUE(at({"b", "a"}, 0).isApprox(b) && at({"b", "a"}, 1).isApprox(a));
+}
+
 TEST(MovingRecording, OfSevenScenesAndScanNetByAPoseAFrame) {
   for (const auto& [image, pose, first] :
        {std::tuple("frame-%06d.depth.png", "frame-%06d.pose.txt", 0), std::tuple("depth/%d.png", "pose/%d.txt", 7)}) {

@@ -215,6 +215,11 @@ TEST(SearchEvaluator, SaysWhatItsMemoryHeldImpossible) {
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
   EXPECT_EQ(asking.impossible().images, 1);
+  // A place in the shadow of the surface, which is remembered to have been free.
+  Proximity hidden = answer.nearest;
+  hidden.state = ProximityState::occluded;
+  EXPECT_NE(asking.past(hidden).state, PastState::not_told);
+  EXPECT_EQ(asking.past(hidden).state, wrong.past(hidden).state);
 }
 
 }  // namespace

@@ -118,6 +118,29 @@ TEST(AskingThread, AnswersThatAreTooOldAreNone) {
   asking.evaluate({&point, 1}, 0.0601, {&answer, 1});
   EXPECT_EQ(answer.nearest.state, ProximityState::not_evaluated);
   EXPECT_TRUE(std::isnan(answer.distance_now_m));
+  // Nor is it known what was there before.
+  asking.evaluate({&point, 1}, 0.0099, {&answer, 1});
+  EXPECT_EQ(answer.nearest.state, ProximityState::not_evaluated);
+}
+
+TEST(AskingThread, PassesOnWhereCamerasStandAndWhenTheySaw) {
+  const Cell cell(5);
+  SearchEvaluator behind(cell.setup.rig, cell.setup.settings);
+  AskingThread asking(behind, {.capsules = 1, .period_s = 1e-4, .max_age_s = 10});
+  const Capsule point = Capsule::point(Vector3d::Zero());
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_TRUE(std::isnan(asking.image_time_s(k))) << "there is no answer yet";
+    Pose elsewhere = cell.setup.rig.cameras[k].T_world_camera;
+    elsewhere.translation().x() += 0.01;
+    Frame frame = cell.problem.frames[k];
+    frame.time_s = 0.001 * static_cast<double>(k + 1);
+    ASSERT_TRUE(asking.update(k, frame, elsewhere).taken());
+    EXPECT_EQ(behind.store().snapshot().T_world_camera(k).translation(), elsewhere.translation());
+  }
+  wait_for_an_answer(asking, {&point, 1}, 0.01);
+  EXPECT_EQ(asking.image_time_s(0), 0.001);
+  EXPECT_EQ(asking.image_time_s(1), 0.002);
+  EXPECT_TRUE(std::isnan(asking.image_time_s(2)));
 }
 
 TEST(AskingThread, WhatWasNotAskedOrHasNoRoomIsNotEvaluated) {
