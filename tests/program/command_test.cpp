@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -125,6 +126,25 @@ TEST(Distances, AsJsonLinesInTheFloorFrame) {
   EXPECT_NEAR(a["known_to_m"].GetDouble(), 0.3, 0.02);
   EXPECT_TRUE(b["known_to_m"].IsNull());
   EXPECT_EQ(a["blind_m"].GetDouble(), 0);
+}
+
+// Up is against the images' y here, so that the wall ahead stands along y.
+TEST(Distances, PlacesAndDirectionsTurnWithTheFloor) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  auto file = wall_rig();
+  file.rig.T_floor_world = Pose(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+  files::save_rig(file, folder / "rig.json");
+  const auto result =
+      run_command("distances . --sensor ideal --in floor --point 0.2,1.7,0 --frames 5 --collect hybrid", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto cells = cells_of(lines_of(result.out).at(1));
+  EXPECT_NEAR(std::stod(cells.at(10)), 2, 0.02);
+  for (const std::size_t direction : {12U, 19U}) {
+    EXPECT_NEAR(std::stod(cells.at(direction)), 0, 0.1) << direction;
+    EXPECT_GT(std::stod(cells.at(direction + 1)), direction == 12 ? 0.99 : 0.5) << direction;
+    EXPECT_NEAR(std::stod(cells.at(direction + 2)), 0, 0.1) << direction;
+  }
 }
 
 TEST(Distances, KnownToIsEmptyWhereOutsideCountsAsObstacle) {

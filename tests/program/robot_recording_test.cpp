@@ -345,6 +345,70 @@ TEST(RobotInRecording, JointsOverTimeAreThoseOfTheImages) {
   EXPECT_THAT(run_command(question, folder).err, AllOf(HasSubstr("rate_hz"), HasSubstr("column 'frame'")));
 }
 
+/// From -0.5 to -0.7, told a whole turn later.
+TEST(RobotInRecording, AJointWithoutLimitsMayBeToldAWholeTurnLater) {
+  const TemporaryFolder folder;
+  write_cell(folder);
+  std::string urdf = kUrdf;
+  urdf.replace(urdf.find("revolute"), 8, "continuous");
+  (void)folder.write("arm.urdf", urdf);
+  const std::string question = kQuestion + kRobot + "--robot-padding 0.02 --joint-speed 1 --frames 4 ";
+  const auto told = [&](const std::string& last) {
+    (void)folder.write("joints.csv", "time_s,pan,tilt\n0.09,-0.5,0.3\n0.11," + last + ",0.5\n");
+    return column(run_command(question, folder), "distance_m");
+  };
+  const auto before = told("-0.7");
+  const auto after_a_turn = told("5.583185307179586");
+  ASSERT_EQ(before.size(), 2U);
+  for (const auto& [link, distance] : before) {
+    EXPECT_NEAR(std::stod(after_a_turn.at(link)), std::stod(distance), 1e-5) << link;
+  }
+}
+
+/// The base is stated in the world, whatever frame the points are in.
+TEST(RobotInRecording, StandsWhereItStoodInTheFloorFrame) {
+  const TemporaryFolder folder;
+  write_cell(folder);
+  const auto in_world = column(run_command(kQuestion + kRobot + "--robot-padding 0.02", folder), "distance_m");
+  auto file = rig_file();
+  file.rig.T_floor_world = Pose(Eigen::Translation3d(0, 0, 1));
+  files::save_rig(file, folder / "rig.json");
+  const std::string box = " --box=-0.8,-0.8,0.6,1.6,1.9,2.7 ";
+  std::string question = kQuestion;
+  question.replace(question.find("--box"), question.find(" --rho") - question.find("--box"), "--in floor" + box);
+  const auto in_floor = column(run_command(question + kRobot + "--robot-padding 0.02", folder), "distance_m");
+  ASSERT_EQ(in_world.size(), 4U);
+  for (const auto& [link, distance] : in_world) {
+    EXPECT_NEAR(std::stod(in_floor.at(link)), std::stod(distance), 0.006) << link;
+  }
+}
+
+// What holds for one part of a link holds for the link.
+TEST(RobotInRecording, ALinkIsAsStaleAsAnyOfItsParts) {
+  const auto part = [](const char* id) { return files::ControlPoint{id, Capsule::point({0, 0, 0}), false}; };
+  const auto answer = [](double distance_m, bool stale, bool budget, double known_to_m) {
+    Answer result;
+    result.nearest.state = ProximityState::measured;
+    result.nearest.distance_m = distance_m;
+    result.nearest.stale = stale;
+    result.nearest.budget = budget;
+    result.nearest.known_to_m = known_to_m;
+    return result;
+  };
+  std::vector<files::ControlPoint> points{part("hand"), part("fore"), part("hand"), part("fore")};
+  std::vector<Answer> answers{answer(0.2, false, false, 0.5), answer(0.3, true, false, 0.4),
+                              answer(0.4, true, true, 0.3), answer(0.1, false, false, 0.6)};
+  program::one_answer_a_link(points, answers);
+  ASSERT_EQ(answers.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(points[i].id, i == 0 ? "hand" : "fore");
+    EXPECT_EQ(answers[i].nearest.distance_m, i == 0 ? 0.2 : 0.1);
+    EXPECT_TRUE(answers[i].nearest.stale);
+    EXPECT_EQ(answers[i].nearest.budget, i == 0);
+    EXPECT_EQ(answers[i].nearest.known_to_m, i == 0 ? 0.3 : 0.4);
+  }
+}
+
 TEST(RobotInRecording, DegreesAreRefusedUnlessTheyAreStated) {
   const TemporaryFolder folder;
   write_cell(folder);
