@@ -1,11 +1,12 @@
 // What one camera has seen free cannot be occupied: it leaves the set of what may be. Internal.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "depthgrid/memory/free_maxima.hpp"
+#include "depthgrid/memory/depth_planes.hpp"
 #include "depthgrid/memory/possible_space.hpp"
-#include "depthgrid/views/cube.hpp"
 #include "depthgrid/views/local_camera.hpp"
 
 namespace depthgrid::memory {
@@ -14,7 +15,7 @@ namespace depthgrid::memory {
 struct Carver {
   views::LocalCamera camera;
   Eigen::Vector3d origin_world = Eigen::Vector3d::Zero();
-  const FreeMaxima* maxima = nullptr;
+  const DepthPlanes* planes = nullptr;
   /// Of the ball around a voxel's centre that has to be free: reach_m + the camera's pose error in it.
   double reach_m = 0;
   float least_radius_m = 0;  ///< no such ball is smaller
@@ -31,24 +32,25 @@ struct Carver {
 [[nodiscard]] double reach_around_centre_m(const PossibleSpace& space, double thinnest_hidden_m) noexcept;
 
 /// Of a snapshot that has to be held. `late_s`: how long before the space's time the image was exposed, 0 or more.
-/// The image must be in `maxima`.
+/// The image must be in `planes`.
 [[nodiscard]] Carver make_carver(const views::Snapshot& snapshot, std::size_t camera, double late_s,
-                                 const FreeMaxima& maxima, const PossibleSpace& space,
+                                 const DepthPlanes& planes, const PossibleSpace& space,
                                  double thinnest_hidden_m) noexcept;
 
 /// Takes out every voxel whose ball is free to the camera, and no other: exactly, up to about 1e-9 m. Returns how many.
 std::int64_t carve(const Carver& carver, VoxelSet& voxels) noexcept;
 
-/// Of the eight children of a cube, which are wholly free, and which have to be split to know. Bit i: child i.
-struct ChildrenSeen {
-  std::uint32_t free = 0;
-  std::uint32_t undecided = 0;
+/// A row of blocks of voxels along x, and the middle of the first, relative to the carver's origin.
+struct BlockRow {
+  float x_m, y_m, z_m;
+  float voxel_m;
+  std::size_t count;
+  Block* voxels;  ///< of each block; what is free is taken out
+  Block* open;    ///< written: which of those that are left need the exact test
 };
 
-/// Children are boxes around the centres of voxels, half_m half a side, whose centres are offset_m from the parent's
-/// along each axis. Only those in `asked`. What it decides is the same with every instruction set once cubes are split
-/// down to voxels.
-[[nodiscard]] ChildrenSeen look_at_children(const Carver& carver, const views::Cube& parent, float offset_m,
-                                            float half_m, std::uint32_t asked) noexcept;
+/// Takes out what is free as far as single precision tells. Returns how many voxels. What is free after the exact test
+/// of those that are left open is the same with every instruction set.
+std::int64_t see_row(const Carver& carver, const BlockRow& row) noexcept;
 
 }  // namespace depthgrid::memory

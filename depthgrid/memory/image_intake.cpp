@@ -28,7 +28,7 @@ int largest(const Rig& rig, Side&& side) {
 ImageIntake::ImageIntake(const views::ViewStore& views, const MemorySettings& settings)
     : thinnest_hidden_m_(settings.thinnest_hidden_m),
       ignored_before_s_(-std::numeric_limits<double>::infinity()),
-      maxima_(largest(views.rig(), [](const PinholeCamera& c) { return c.width_px; }),
+      planes_(largest(views.rig(), [](const PinholeCamera& c) { return c.width_px; }),
               largest(views.rig(), [](const PinholeCamera& c) { return c.height_px; })) {
   validate(settings);
   const VoxelSet region(settings.low_world, settings.high_world, settings.voxel_m);
@@ -81,8 +81,8 @@ void ImageIntake::take_one(const views::Snapshot& snapshot, std::size_t camera, 
   if (view.time_s() < ignored_before_s_ || v_max_m_s * late_s > (voxels.high_world() - voxels.low_world()).norm()) {
     return;
   }
-  maxima_.update(views::prepared(view));
-  const Carver carver = make_carver(snapshot, camera, late_s, maxima_, space, thinnest_hidden_m_);
+  planes_.update(views::prepared(view), snapshot.camera(camera).intrinsics);
+  const Carver carver = make_carver(snapshot, camera, late_s, planes_, space, thinnest_hidden_m_);
   if (carve(carver, space.voxels) > 0) {
     space.is_everything = false;
   }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "depthgrid/memory/free_maxima.hpp"
+#include "depthgrid/memory/depth_planes.hpp"
 #include "depthgrid/memory/history.hpp"
 #include "depthgrid/memory/possible_space.hpp"
 #include "depthgrid/memory/seeds.hpp"
@@ -38,7 +38,7 @@ class ImageIntake {
   double thinnest_hidden_m_;
   double ignored_before_s_;
   std::array<std::uint64_t, views::kMaxCameras> taken_{};  ///< versions
-  FreeMaxima maxima_;
+  DepthPlanes planes_;
   std::vector<Block> blocks_;
   SeedScratch seeds_;
 };
