@@ -20,7 +20,7 @@ namespace {
 constexpr int kRepetitions = 5;
 constexpr std::size_t kPixels = 640UL * 480UL;
 
-struct Scene {
+struct HardScene {
   std::string name;
   /// Depth in millimetres of a pixel of camera k.
   std::function<std::uint16_t(std::mt19937&, int k, int u, int v)> depth_mm;
@@ -75,7 +75,7 @@ void write_table() {
   const auto checker = [](std::mt19937&, int, int u, int v) -> std::uint16_t {
     return (u / 2 + v / 2) % 2 == 0 ? 3500 : 1500;
   };
-  const std::vector<Scene> scenes{
+  const std::vector<HardScene> scenes{
       {"uniform noise, 0.5 to 4.5 m",
        [](std::mt19937& g, int, int, int) { return static_cast<std::uint16_t>(500 + g() % 4000); }},
       {"4 m, every 200th pixel at random",
@@ -98,7 +98,7 @@ void write_table() {
       on_arm.push_back(Capsule::point(p));
     }
     std::vector<Capsule> on_camera(9, Capsule::point(rig.cameras[0].T_world_camera.translation()));
-    for (const Scene& scene : scenes) {
+    for (const HardScene& scene : scenes) {
       std::mt19937 generator(7);
       std::vector<std::vector<std::uint16_t>> images(static_cast<std::size_t>(cameras));
       for (const double pose_error_m : {0.0, 0.02}) {

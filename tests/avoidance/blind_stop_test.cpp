@@ -20,7 +20,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kPeriod = 0.002;
+constexpr double kLoopPeriod = 0.002;
 constexpr double kNaN = Proximity::kNaN;
 
 /// Two cameras that may freeze. Where one has, what is not measured is unknown and near.
@@ -128,28 +128,28 @@ TEST_F(BlindStop, EndsMotionWithinTheJointsOwnDeceleration) {
     control::PolygonTask task(polygon);
     cameras_ = {};
     AvoidanceLoop loop({model_}, task, cameras_, settings_);
-    control::SimulatedArm simulated(settings_.controller.limits, kPeriod, test::bent());
+    control::SimulatedArm simulated(settings_.controller.limits, kLoopPeriod, test::bent());
     Arm arm(simulated);
     ASSERT_TRUE(loop.start(arm));
     for (int k = 0; k < at; ++k) {
-      ASSERT_TRUE(loop.cycle(arm, k * kPeriod));
+      ASSERT_TRUE(loop.cycle(arm, k * kLoopPeriod));
       ASSERT_FALSE(brakes(loop.report().reason.limit));
       simulated.advance();
     }
     // Cameras are believed for a while: what follows is asked for after that.
-    const int late = fault == Fault::cameras_freeze ? static_cast<int>(settings_.max_image_age_s / kPeriod) + 1 : 0;
-    cameras_.frozen_from_s.fill(fault == Fault::cameras_freeze ? (at - 1) * kPeriod : 1e9);
+    const int late = fault == Fault::cameras_freeze ? static_cast<int>(settings_.max_image_age_s / kLoopPeriod) + 1 : 0;
+    cameras_.frozen_from_s.fill(fault == Fault::cameras_freeze ? (at - 1) * kLoopPeriod : 1e9);
     for (int k = at; k < at + late; ++k) {
-      (void)loop.cycle(arm, k * kPeriod);
+      (void)loop.cycle(arm, k * kLoopPeriod);
       simulated.advance();
     }
     arm.fault = fault;
     const control::JointCommand before = loop.report().output.command;
-    const double standing_s = (before.velocity_rad_s.array().abs() / a.array()).maxCoeff() + 2 * kPeriod;
+    const double standing_s = (before.velocity_rad_s.array().abs() / a.array()).maxCoeff() + 2 * kLoopPeriod;
     control::JointVector way_rad = control::JointVector::Zero(7);
     int periods = 0;
     for (int k = at + late; k < at + late + 600; ++k, ++periods) {
-      const double now_s = fault == Fault::clock_back ? 0.0 : fault == Fault::clock_nan ? kNaN : k * kPeriod;
+      const double now_s = fault == Fault::clock_back ? 0.0 : fault == Fault::clock_nan ? kNaN : k * kLoopPeriod;
       const control::JointVector was_rad = loop.report().output.command.position_rad;
       EXPECT_EQ(loop.cycle(arm, now_s), fault == Fault::cameras_freeze);
       ASSERT_EQ(loop.report().reason.limit, expected(fault)) << run.reproduce() << ", case " << i;
@@ -160,12 +160,12 @@ TEST_F(BlindStop, EndsMotionWithinTheJointsOwnDeceleration) {
         break;
       }
     }
-    ASSERT_LE(periods * kPeriod, standing_s) << run.reproduce() << ", case " << i;
+    ASSERT_LE(periods * kLoopPeriod, standing_s) << run.reproduce() << ", case " << i;
     for (int j = 0; j < 7; ++j) {
       const double v = std::abs(before.velocity_rad_s[j]);
-      ASSERT_LE(way_rad[j], v * v / (2 * a[j]) + v * kPeriod + 1e-12) << run.reproduce() << ", case " << i;
+      ASSERT_LE(way_rad[j], v * v / (2 * a[j]) + v * kLoopPeriod + 1e-12) << run.reproduce() << ", case " << i;
     }
-    longest_s = std::max(longest_s, periods * kPeriod);
+    longest_s = std::max(longest_s, periods * kLoopPeriod);
     fastest_rad_s = std::max(fastest_rad_s, before.velocity_rad_s.cwiseAbs().maxCoeff());
   }
   EXPECT_GT(fastest_rad_s, 0.3) << "nothing to stop";
@@ -175,12 +175,12 @@ TEST_F(BlindStop, EndsMotionWithinTheJointsOwnDeceleration) {
 TEST_F(BlindStop, GoesOnWhenTheStateIsBack) {
   control::PolygonTask task(test::hexagon(model_));
   AvoidanceLoop loop({model_}, task, cameras_, settings_);
-  control::SimulatedArm simulated(settings_.controller.limits, kPeriod, test::bent());
+  control::SimulatedArm simulated(settings_.controller.limits, kLoopPeriod, test::bent());
   Arm arm(simulated);
   ASSERT_TRUE(loop.start(arm));
   for (int k = 0; k < 900; ++k) {
     arm.fault = k >= 300 && k < 600 ? std::optional(Fault::no_state) : std::nullopt;
-    EXPECT_EQ(loop.cycle(arm, k * kPeriod), !arm.fault.has_value()) << k;
+    EXPECT_EQ(loop.cycle(arm, k * kLoopPeriod), !arm.fault.has_value()) << k;
     EXPECT_EQ(loop.report().evaluated, !arm.fault.has_value());
     simulated.advance();
     if (k == 599) {
@@ -197,17 +197,17 @@ TEST_F(BlindStop, ALostCameraLimitsMotionAndDoesNotPush) {
     cameras_ = {};
     control::PolygonTask task(test::hexagon(model_));
     AvoidanceLoop loop({model_}, task, cameras_, settings_);
-    control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+    control::SimulatedArm arm(settings_.controller.limits, kLoopPeriod, test::bent());
     ASSERT_TRUE(loop.start(arm));
     double fastest_m_s = 0;
     for (int k = 0; k < 1500; ++k) {
       if (k == 250) {
         cameras_.frozen_from_s[1] = 0.5;  // the first one goes on
       }
-      const bool lost = k * kPeriod > 0.5 + settings_.max_image_age_s;
+      const bool lost = k * kLoopPeriod > 0.5 + settings_.max_image_age_s;
       cameras_.distance_m = lost ? 0.02 : 5;
       cameras_.state = state;
-      ASSERT_TRUE(loop.cycle(arm, k * kPeriod));
+      ASSERT_TRUE(loop.cycle(arm, k * kLoopPeriod));
       arm.advance();
       EXPECT_EQ(loop.report().lost_cameras, lost ? 1 : 0) << k;
       if (lost) {
@@ -262,7 +262,7 @@ TEST_F(BlindStop, ReasonsAreOneSentence) {
 TEST_F(BlindStop, SaysThatAnAssumptionIsBroken) {
   control::PolygonTask task(test::hexagon(model_));
   AvoidanceLoop loop({model_}, task, cameras_, settings_);
-  control::SimulatedArm simulated(settings_.controller.limits, kPeriod, test::bent());
+  control::SimulatedArm simulated(settings_.controller.limits, kLoopPeriod, test::bent());
   Arm arm(simulated);
   ASSERT_TRUE(loop.start(arm));
   ASSERT_TRUE(loop.cycle(arm, 1));
@@ -284,7 +284,7 @@ TEST_F(BlindStop, SaysSinceWhenSomethingMayBeThere) {
   cameras_.distance_m = 0.25;
   cameras_.state = ProximityState::occluded;
   AvoidanceLoop loop({model_}, task, cameras_, settings_);
-  control::SimulatedArm simulated(settings_.controller.limits, kPeriod, test::bent());
+  control::SimulatedArm simulated(settings_.controller.limits, kLoopPeriod, test::bent());
   ASSERT_TRUE(loop.start(simulated));
   ASSERT_TRUE(loop.cycle(simulated, 3));
   EXPECT_THAT(std::string(describe(loop.report().reason, buffer_)),
@@ -305,10 +305,10 @@ TEST_F(BlindStop, NamesThePartWithTheLeastRoom) {
   control::PolygonTask task(test::hexagon(model_));
   cameras_.distance_m = 0.3;
   AvoidanceLoop loop({model_}, task, cameras_, settings_);
-  control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+  control::SimulatedArm arm(settings_.controller.limits, kLoopPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   for (int k = 0; k < 200; ++k) {
-    ASSERT_TRUE(loop.cycle(arm, k * kPeriod));
+    ASSERT_TRUE(loop.cycle(arm, k * kLoopPeriod));
     arm.advance();
   }
   const MotionReason& reason = loop.report().reason;

@@ -131,7 +131,7 @@ struct Case {
   }
 };
 
-constexpr double kPeriod = 0.002;
+constexpr double kArmPeriod = 0.002;
 
 /// Three cycles at three places, of which the first alone is evaluated: check(case, loop, q at the first, q now).
 template <class Check>
@@ -150,7 +150,7 @@ void for_random_arms(std::int64_t default_count, control::BodyLaw law, int parts
     const VectorXd q_asked = c.told.q;
     for (int cycle = 0; cycle < 3; ++cycle) {
       SCOPED_TRACE("cycle " + std::to_string(cycle));
-      ASSERT_TRUE(loop.cycle(c.told, cycle * kPeriod));
+      ASSERT_TRUE(loop.cycle(c.told, cycle * kArmPeriod));
       ASSERT_EQ(loop.report().evaluated, cycle == 0);
       check(c, loop, q_asked, VectorXd(c.told.q));
       c.told.q = c.joint_positions();

@@ -14,8 +14,8 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 /// The robot's interval in every pixel, with padded rows.
 struct RobotImage {
@@ -46,7 +46,7 @@ long double reduced_twin(const DepthImage& measured, const RobotImage* robot, co
   if (robot != nullptr) {
     const float near_m = robot->near_m[robot->index(u, v)];
     const float far_m = robot->far_m[robot->index(u, v)];
-    if (near_m > 0 && near_m <= depth_m - m && depth_m <= far_m && far_m < kInf) {
+    if (near_m > 0 && near_m <= depth_m - m && depth_m <= far_m && far_m < kInfinite) {
       return far_m;
     }
   }
@@ -100,7 +100,7 @@ Scene random_scene(std::mt19937_64& random) {
       scene.measured.at(u, v) = whole(1, 10) <= valid_of_ten ? depth_m : 0.0F;
       if (whole(0, 1) == 0) {
         scene.robot.set(u, v, depth_m + static_cast<float>(uniform(-0.3, 0.1)),
-                        whole(0, 30) == 0 ? kInf : depth_m + static_cast<float>(uniform(-0.1, 0.3)));
+                        whole(0, 30) == 0 ? kInfinite : depth_m + static_cast<float>(uniform(-0.1, 0.3)));
       }
     }
   }
@@ -148,7 +148,7 @@ TEST(FreeDepth, RobotPixelsByHand) {
   EXPECT_NEAR(free_of_pixel(2.0F, 1.5F, 1.99F, margin), 1.75, 1e-6) << "measured behind the exit";
   EXPECT_NEAR(free_of_pixel(1.0F, 1.5F, 2.5F, margin), 0.75, 1e-6) << "something stands before the robot";
   EXPECT_NEAR(free_of_pixel(2.0F, 0.0F, 2.5F, margin), 1.75, 1e-6) << "near of 0: no robot";
-  EXPECT_NEAR(free_of_pixel(2.0F, 1.5F, kInf, margin), 1.75, 1e-6) << "no exit";
+  EXPECT_NEAR(free_of_pixel(2.0F, 1.5F, kInfinite, margin), 1.75, 1e-6) << "no exit";
   EXPECT_EQ(free_of_pixel(0.0F, 1.5F, 2.5F, margin), 0.0F) << "no measurement: the robot's mask frees nothing";
   EXPECT_EQ(free_of_pixel(0.1F, 0.0F, 0.0F, margin), 0.0F) << "margin larger than the depth";
 }
@@ -205,28 +205,28 @@ TEST(BrokenMargin, NamesValueAndRule) {
   EXPECT_EQ(message(PoseMargin{}), "");
   EXPECT_EQ(message(SensorMargin{-0.01, 0, 0, 1}),
             "camera 'left': constant is -0.01 m, must be a finite number that is not negative");
-  EXPECT_EQ(message(SensorMargin{0, kNaN, 0, 1}),
+  EXPECT_EQ(message(SensorMargin{0, kNoNumber, 0, 1}),
             "camera 'left': linear is nan, must be a finite number that is not negative");
-  EXPECT_EQ(message(SensorMargin{0, 0, kInf, 1}),
+  EXPECT_EQ(message(SensorMargin{0, 0, kInfinite, 1}),
             "camera 'left': quadratic is inf 1/m, must be a finite number that is not negative");
   EXPECT_EQ(message(SensorMargin{0, 0, 0, 17}), "camera 'left': filter radius is 17 px, must be between 0 and 16");
   EXPECT_EQ(message(SensorMargin{0, 0, 0, -1}), "camera 'left': filter radius is -1 px, must be between 0 and 16");
   EXPECT_EQ(message(PoseMargin{-1, 0, 0}),
             "camera 'left': translation is -1 m, must be a finite number that is not negative");
-  EXPECT_EQ(message(PoseMargin{0, kInf, 0}),
+  EXPECT_EQ(message(PoseMargin{0, kInfinite, 0}),
             "camera 'left': rotation is inf rad, must be a finite number that is not negative");
-  EXPECT_EQ(message(PoseMargin{0, 0, kNaN}),
+  EXPECT_EQ(message(PoseMargin{0, 0, kNoNumber}),
             "camera 'left': time is nan m, must be a finite number that is not negative");
   EXPECT_EQ(message(CameraMargins{}), "");
   EXPECT_EQ(message(CameraMargins{{0, 0, 0, 17}, 0, 0, 0, 0}),
             "camera 'left': filter radius is 17 px, must be between 0 and 16");
   EXPECT_EQ(message(CameraMargins{{}, -1, 0, 0, 0}),
             "camera 'left': translation is -1 m, must be a finite number that is not negative");
-  EXPECT_EQ(message(CameraMargins{{}, 0, kNaN, 0, 0}),
+  EXPECT_EQ(message(CameraMargins{{}, 0, kNoNumber, 0, 0}),
             "camera 'left': rotation is nan rad, must be a finite number that is not negative");
   EXPECT_EQ(message(CameraMargins{{}, 0, 0, -0.1, 0}),
             "camera 'left': half exposure is -0.1 s, must be a finite number that is not negative");
-  EXPECT_EQ(message(CameraMargins{{}, 0, 0, 0, kInf}),
+  EXPECT_EQ(message(CameraMargins{{}, 0, 0, 0, kInfinite}),
             "camera 'left': time uncertainty is inf s, must be a finite number that is not negative");
   EXPECT_EQ(test::thrown_message([] {
               FreeDepth(4, 3, {0, 0, 0, 17});

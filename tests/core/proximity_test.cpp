@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::array kStates{ProximityState::not_evaluated, ProximityState::measured,   ProximityState::occluded,
                              ProximityState::unmeasured,    ProximityState::unobserved, ProximityState::outside,
@@ -61,7 +61,7 @@ TEST(LowerBoundAfter, ShrinksByTheFastestMotion) {
 
 TEST(LowerBoundAfter, IsNeverNegative) {
   EXPECT_EQ(lower_bound_after(answer(ProximityState::measured, 0.3), 1.0, 1.6), 0.0);
-  EXPECT_EQ(lower_bound_after(answer(ProximityState::measured, 0.3), kInf, 1.6), 0.0);
+  EXPECT_EQ(lower_bound_after(answer(ProximityState::measured, 0.3), kInfinity, 1.6), 0.0);
   EXPECT_EQ(lower_bound_after(answer(ProximityState::measured, 0.0), 0.0, 1.6), 0.0);
 }
 
@@ -78,8 +78,8 @@ TEST(LowerBoundAfter, HasNoAnswerForNonsense) {
 TEST(LowerBoundAfter, InfiniteTimeAtNoSpeedOrInfiniteSpeedAtOnceGivesNothingAway) {
   // 0 times infinity is no number; the only bound left is 0.
   const Proximity measured = answer(ProximityState::measured, 0.3);
-  EXPECT_FALSE(lower_bound_after(measured, kInf, 0.0) > 0.0);
-  EXPECT_FALSE(lower_bound_after(measured, 0.0, kInf) > 0.0);
+  EXPECT_FALSE(lower_bound_after(measured, kInfinity, 0.0) > 0.0);
+  EXPECT_FALSE(lower_bound_after(measured, 0.0, kInfinity) > 0.0);
 }
 
 }  // namespace

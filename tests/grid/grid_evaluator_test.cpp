@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
 
-constexpr int kWidth = 64;
-constexpr int kHeight = 48;
-constexpr DepthQuantisation kCells{0.2, 0.01, 0.0, 330};
+constexpr int kImageWidth = 64;
+constexpr int kImageHeight = 48;
+constexpr DepthQuantisation kDepthCells{0.2, 0.01, 0.0, 330};
 
 /// Looks along z from the origin, as do the others of its rig, 0.1 m beside each other.
 Rig rig_of(int cameras) {
@@ -24,7 +24,7 @@ Rig rig_of(int cameras) {
   for (int k = 0; k < cameras; ++k) {
     RigCamera& camera = rig.cameras.emplace_back();
     camera.id = "camera " + std::to_string(k);
-    camera.intrinsics = {kWidth, kHeight, 52.5, 52.5, 32, 24};
+    camera.intrinsics = {kImageWidth, kImageHeight, 52.5, 52.5, 32, 24};
     camera.T_world_camera.translation().x() = 0.1 * k;
   }
   return rig;
@@ -40,20 +40,20 @@ EvaluationSettings letter(RobotPixels robot_pixels = RobotPixels::case_iv) {
 
 /// A wall, with a robot before it, 1.9 to 2.1 m deep, in the middle of the image.
 struct RobotBeforeWall {
-  std::vector<float> depth_m = std::vector<float>(kWidth * kHeight, 3.4F);
-  std::vector<float> near_m = std::vector<float>(kWidth * kHeight, 0.0F);
-  std::vector<float> far_m = std::vector<float>(kWidth * kHeight, 0.0F);
+  std::vector<float> depth_m = std::vector<float>(kImageWidth * kImageHeight, 3.4F);
+  std::vector<float> near_m = std::vector<float>(kImageWidth * kImageHeight, 0.0F);
+  std::vector<float> far_m = std::vector<float>(kImageWidth * kImageHeight, 0.0F);
   RobotBeforeWall() {
     for (std::size_t v = 20; v < 28; ++v) {
       for (std::size_t u = 28; u < 36; ++u) {
-        depth_m[v * kWidth + u] = 1.95F;
-        near_m[v * kWidth + u] = 1.9F;
-        far_m[v * kWidth + u] = 2.1F;
+        depth_m[v * kImageWidth + u] = 1.95F;
+        near_m[v * kImageWidth + u] = 1.9F;
+        far_m[v * kImageWidth + u] = 2.1F;
       }
     }
   }
   [[nodiscard]] Frame frame(double time_s = 0) const {
-    return {depth_view(depth_m, kWidth, kHeight), {near_m.data(), far_m.data(), 0}, time_s};
+    return {depth_view(depth_m, kImageWidth, kImageHeight), {near_m.data(), far_m.data(), 0}, time_s};
   }
 };
 
@@ -62,10 +62,10 @@ const Capsule kInRobot = Capsule::point({0, 0, 2});
 
 TEST(GridEvaluator, OneCameraSeesAnObstacleBehindTheRobotOnlyInCaseFour) {
   const RobotBeforeWall scene;
-  GridEvaluator case_iv(rig_of(1), 0, kCells, letter());
+  GridEvaluator case_iv(rig_of(1), 0, kDepthCells, letter());
   ASSERT_TRUE(case_iv.update(0, scene.frame()).taken());
   EXPECT_NEAR(case_iv.distance(kInRobot).distance_now_m, 0.1, 0.03);
-  GridEvaluator removed(rig_of(1), 0, kCells, letter(RobotPixels::removed));
+  GridEvaluator removed(rig_of(1), 0, kDepthCells, letter(RobotPixels::removed));
   ASSERT_TRUE(removed.update(0, scene.frame()).taken());
   EXPECT_EQ(removed.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
   // What stands before the robot, or is read behind it, stays.
@@ -92,7 +92,7 @@ TEST(GridEvaluator, OneCameraSeesAnObstacleBehindTheRobotOnlyInCaseFour) {
 
 TEST(GridEvaluator, KnowsNothingToBeFreeWithoutAnImage) {
   for (const RobotPixels robot : {RobotPixels::case_iv, RobotPixels::removed}) {
-    GridEvaluator evaluator(rig_of(1), 0, kCells, letter(robot));
+    GridEvaluator evaluator(rig_of(1), 0, kDepthCells, letter(robot));
     EXPECT_EQ(evaluator.distance(kInRobot).distance_now_m, 0) << "before the first";
     ASSERT_TRUE(evaluator.update(0, RobotBeforeWall().frame()).taken());
     const FrameUpdate update = evaluator.update(0, Frame{});
@@ -104,7 +104,7 @@ TEST(GridEvaluator, KnowsNothingToBeFreeWithoutAnImage) {
 
 TEST(GridEvaluator, AnswersPointsOnlyAndSaysWhy) {
   const RobotBeforeWall scene;
-  GridEvaluator evaluator(rig_of(1), 0, kCells, letter());
+  GridEvaluator evaluator(rig_of(1), 0, kDepthCells, letter());
   ASSERT_TRUE(evaluator.update(0, scene.frame()).taken());
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Vector3d p(0.7, 0.3, 3.2);
@@ -132,7 +132,7 @@ TEST(GridEvaluator, AnswersPointsOnlyAndSaysWhy) {
 }
 
 TEST(GridEvaluator, AnImageCountsAsNewUntilItIsTooOld) {
-  GridEvaluator evaluator(rig_of(2), 0, kCells, letter());
+  GridEvaluator evaluator(rig_of(2), 0, kDepthCells, letter());
   EXPECT_TRUE(std::isnan(evaluator.image_time_s(0)));
   ASSERT_TRUE(evaluator.update(0, RobotBeforeWall().frame(1.0)).taken());
   ASSERT_TRUE(evaluator.update(1, RobotBeforeWall().frame(1.2)).taken());
@@ -157,7 +157,7 @@ TEST(GridEvaluator, AnImageCountsAsNewUntilItIsTooOld) {
 TEST(GridEvaluator, PlacesAndDirectionsTurnWithTheCamera) {
   RobotBeforeWall scene;
   for (std::size_t i = 0; i < scene.depth_m.size(); ++i) {
-    scene.depth_m[i] = i % kWidth < 20 ? 1.8F : 3.4F;  // an edge to one side, so that not all lies straight ahead
+    scene.depth_m[i] = i % kImageWidth < 20 ? 1.8F : 3.4F;  // an edge to one side, so that not all lies straight ahead
     scene.near_m[i] = scene.far_m[i] = 0;
   }
   Rig turned = rig_of(1);
@@ -168,8 +168,8 @@ TEST(GridEvaluator, PlacesAndDirectionsTurnWithTheCamera) {
     EvaluationSettings settings = letter();
     settings.variant = variant;
     settings.sensor.lateral_px = 0;
-    GridEvaluator straight(rig_of(1), 0, kCells, settings);
-    GridEvaluator other(turned, 0, kCells, settings);
+    GridEvaluator straight(rig_of(1), 0, kDepthCells, settings);
+    GridEvaluator other(turned, 0, kDepthCells, settings);
     ASSERT_TRUE(straight.update(0, scene.frame()).taken());
     ASSERT_TRUE(other.update(0, scene.frame()).taken());
     for (const Vector3d& p : {Vector3d(-0.25, 0.1, 1.7), Vector3d(0.1, -0.2, 3.25), Vector3d(0.3, 0.2, 3.2)}) {
@@ -190,15 +190,15 @@ TEST(GridEvaluator, BlindZonesFreeNothingWithAnErrorOfPoseEither) {
   Rig rig = rig_of(2);
   rig.cameras[1].T_world_camera.translation() = Vector3d(0, 0, 1);
   rig.cameras[1].rule.near_m = 0.5;
-  const std::vector<float> nothing_m(kWidth * kHeight, 0.0F);
-  const std::vector<float> wall_m(kWidth * kHeight, 2.4F);
+  const std::vector<float> nothing_m(kImageWidth * kImageHeight, 0.0F);
+  const std::vector<float> wall_m(kImageWidth * kImageHeight, 2.4F);
   for (const double error_m : {0.0, 0.001, 0.02}) {
     EvaluationSettings settings;
     settings.sensor.lateral_px = 0;
     settings.pose.translation_m = error_m;
-    GridEvaluator evaluator(rig, 0, kCells, settings);
-    ASSERT_TRUE(evaluator.update(0, {depth_view(nothing_m, kWidth, kHeight), {}, 0}).taken());
-    ASSERT_TRUE(evaluator.update(1, {depth_view(wall_m, kWidth, kHeight), {}, 0}).taken());
+    GridEvaluator evaluator(rig, 0, kDepthCells, settings);
+    ASSERT_TRUE(evaluator.update(0, {depth_view(nothing_m, kImageWidth, kImageHeight), {}, 0}).taken());
+    ASSERT_TRUE(evaluator.update(1, {depth_view(wall_m, kImageWidth, kImageHeight), {}, 0}).taken());
     for (const double z_m : {1.1, 1.3, 1.48}) {
       EXPECT_LT(evaluator.distance(Capsule::point({0, 0, z_m})).nearest.distance_m, 0.02) << error_m << " at " << z_m;
     }
@@ -215,9 +215,9 @@ TEST(GridEvaluator, TakesFramesCameraByCamera) {
   EvaluationSettings settings;
   settings.sensor.lateral_px = 0;
   settings.max_frame_age_s = 0.1;
-  GridEvaluator all(rig_of(3), 0, kCells, settings);
+  GridEvaluator all(rig_of(3), 0, kDepthCells, settings);
   ASSERT_TRUE(update_all(all, frames).taken());
-  GridEvaluator each(rig_of(3), 0, kCells, settings);
+  GridEvaluator each(rig_of(3), 0, kDepthCells, settings);
   for (const std::size_t k : {2, 0, 1}) {
     ASSERT_TRUE(each.update(k, frames[k]).taken());
   }
@@ -250,7 +250,7 @@ TEST(GridEvaluator, TakesFramesCameraByCamera) {
 TEST(GridEvaluator, HasNoOtherCamerasAndTheyDoNotMove) {
   const RobotBeforeWall scene;
   const Rig rig = rig_of(2);
-  GridEvaluator evaluator(rig, 0, kCells, letter());
+  GridEvaluator evaluator(rig, 0, kDepthCells, letter());
   EXPECT_EQ(evaluator.camera_count(), 2U);
   EXPECT_EQ(evaluator.update(2, scene.frame()).result, UpdateResult::unusable);
   EXPECT_THAT(evaluator.update(2, scene.frame()).reason, HasSubstr("no such camera"));
@@ -261,7 +261,7 @@ TEST(GridEvaluator, HasNoOtherCamerasAndTheyDoNotMove) {
   EXPECT_THAT(moved.reason, HasSubstr("do not move"));
 
   // A camera that is said to have moved has seen nothing, whatever it saw before.
-  GridEvaluator one(rig_of(1), 0, kCells, letter(RobotPixels::removed));
+  GridEvaluator one(rig_of(1), 0, kDepthCells, letter(RobotPixels::removed));
   ASSERT_TRUE(one.update(0, scene.frame()).taken());
   ASSERT_EQ(one.distance(kInRobot).nearest.state, ProximityState::beyond_rho);
   Pose elsewhere = Pose::Identity();

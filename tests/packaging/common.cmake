@@ -9,6 +9,13 @@ function(run)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
+# How a tree of its own is compiled where no compiler cache has the objects of the tree under test: quickly, since its
+# programs are hardly run.
+set(tree_type -DCMAKE_BUILD_TYPE=Release)
+if(NOT LAUNCHER)
+  set(tree_type -DCMAKE_BUILD_TYPE=Debug "-DCMAKE_CXX_FLAGS_DEBUG=-O0 -DHWY_COMPILE_ONLY_STATIC")
+endif()
+
 function(require_match text regex what)
   if(NOT "${text}" MATCHES "${regex}")
     message(FATAL_ERROR "${what}: nothing matches '${regex}' in\n${text}")

@@ -6,7 +6,7 @@ set(options "")
 foreach(package IN ITEMS CLI11 GTest embree fcl nlohmann_json)
   list(APPEND options "-DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON")
 endforeach()
-list(APPEND options -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=ON
+list(APPEND options -G Ninja ${tree_type} -DBUILD_SHARED_LIBS=ON
   "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}"
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12
   # As the tree under test has it: then a compiler cache has the objects already.

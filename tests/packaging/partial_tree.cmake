@@ -4,7 +4,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/common.cmake")
 
 set(tree "${WORK}/tree")
 file(REMOVE_RECURSE "${WORK}/prefix" "${WORK}/packages" "${tree}/lib" "${tree}/depthgrid_installed.stamp")
-run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${tree}" -G Ninja -DCMAKE_BUILD_TYPE=Release
+run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${tree}" -G Ninja ${tree_type}
   "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}"
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 "-DDEPTHGRID_WARNINGS_AS_ERRORS=${WARNINGS_AS_ERRORS}"
   -DDEPTHGRID_BUILD_TESTS=OFF -DDEPTHGRID_BUILD_LAB=OFF)

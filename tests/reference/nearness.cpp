@@ -6,9 +6,9 @@
 namespace depthgrid::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnboundedM = std::numeric_limits<double>::infinity();
 /// More than the rounding of any distance here.
-constexpr double kRoundingM = 1e-9;
+constexpr double kNearnessRoundingM = 1e-9;
 /// Boxes that project on more pixels are too large to be decided by single pixels: subdividing them is cheaper.
 constexpr int kMaxPixels = 2048;
 /// ...unless their half diagonal is this share of the pose error, or less: then the pose error makes them large.
@@ -29,7 +29,7 @@ Nearness::Nearness(const CameraSpace& camera, const Primitive& primitive, double
   const std::array<double, 4> inside_a_m = camera.inside_m(a_camera_);
   const std::array<double, 4> inside_b_m = camera.inside_m(b_camera_);
   for (std::size_t i = 0; i < border_m_.size(); ++i) {
-    border_m_[i] = std::max(0.0, std::min(inside_a_m[i], inside_b_m[i]) - kRoundingM);
+    border_m_[i] = std::max(0.0, std::min(inside_a_m[i], inside_b_m[i]) - kNearnessRoundingM);
   }
   // The pixels in which a piece may be near enough.
   const WorldBox around = WorldBox{a_camera_.cwiseMin(b_camera_), a_camera_.cwiseMax(b_camera_)}.grown(enough_m_);
@@ -59,7 +59,7 @@ const Nearness::Known& Nearness::piece_distance(int u, int v, std::size_t i, con
     if (depths[0] < farthest_m_) {
       const PyramidPiece piece = camera_->piece(u, v, depths[0], std::min(depths[1], farthest_m_));
       const Separation between = separation(piece, a_camera_, b_camera_, enough_m_);
-      known.distance_m = std::min(enough_m_, std::max(0.0, between.lower_m - kRoundingM));
+      known.distance_m = std::min(enough_m_, std::max(0.0, between.lower_m - kNearnessRoundingM));
       known.nearest = between.nearest.cast<float>();
     }
   }
@@ -76,7 +76,7 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
       pose_error_m = std::max(pose_error_m, camera_->pose_error_m(box.corner(i)));
     }
   }
-  const double radius_m = pose_error_m + box.half_diagonal_m() + kRoundingM;
+  const double radius_m = pose_error_m + box.half_diagonal_m() + kNearnessRoundingM;
   const std::array<Eigen::Vector3d, 8> corners =
       camera_->corners_in_camera(pose_error_m > 0 ? box.grown(pose_error_m) : box);
   const std::optional<CameraSpace::PixelWindow> hull = camera_->window_of(corners);
@@ -84,20 +84,20 @@ double Nearness::of_blocked_m(const WorldBox& box, const std::optional<ViewLimit
     return 0;
   }
   CameraSpace::PixelWindow window = *hull;
-  double z_low = kInfinity;
-  double z_high = -kInfinity;
+  double z_low = kUnboundedM;
+  double z_high = -kUnboundedM;
   for (const Eigen::Vector3d& corner : corners) {
-    z_low = std::min(z_low, corner.z() - kRoundingM);
-    z_high = std::max(z_high, corner.z() + kRoundingM);
+    z_low = std::min(z_low, corner.z() - kNearnessRoundingM);
+    z_high = std::max(z_high, corner.z() + kNearnessRoundingM);
   }
   const PinholeCamera& image = camera_->intrinsics();
   const Eigen::Vector3d centre = camera_->to_camera(box.centre());
-  double result_m = kInfinity;
+  double result_m = kUnboundedM;
   if (limits && pose_error_m == 0) {
     z_low = std::max(z_low, limits->d_min_m);
     z_high = std::min(z_high, limits->d_max_m);
     if (z_low > z_high) {
-      return kInfinity;
+      return kUnboundedM;
     }
   } else {
     const std::array<bool, 4> leaves{window.u_first < 0, window.u_last >= image.width_px, window.v_first < 0,

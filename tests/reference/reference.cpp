@@ -8,7 +8,7 @@ namespace depthgrid::reference {
 namespace {
 
 /// The bisection for the axis' nearest point errs by less.
-constexpr double kRoundingM = 1e-9;
+constexpr double kAnswerRoundingM = 1e-9;
 
 struct OpenBox {
   double distance_m;  ///< from the axis to O in the box: nothing in it is nearer
@@ -216,7 +216,8 @@ Interval Reference::distance(const Primitive& primitive, const SearchSettings& s
       const Eigen::Vector3d corner = next.box.corner(i);
       const WorldBox child{corner.cwiseMin(centre), corner.cwiseMax(centre)};
       const Eigen::Vector3d on_axis = nearest_on_axis(primitive, child);
-      const double distance_m = std::max(next.distance_m, (child.nearest_to(on_axis) - on_axis).norm() - kRoundingM);
+      const double distance_m =
+          std::max(next.distance_m, (child.nearest_to(on_axis) - on_axis).norm() - kAnswerRoundingM);
       if (distance_m < std::min(hi_m, cap_m)) {
         open.push({distance_m, false, child});
       }

@@ -7,7 +7,7 @@
 namespace depthgrid::views {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 class Draw {
@@ -39,13 +39,13 @@ struct Patch {
 };
 
 float broken_metres(Draw& draw) {
-  return draw.one_of({kNaN, kInf, -kInf, -1.0F, -0.0F, 1e-42F, std::numeric_limits<float>::max()});
+  return draw.one_of({kNaN, kInfinite, -kInfinite, -1.0F, -0.0F, 1e-42F, std::numeric_limits<float>::max()});
 }
 
 /// A robot's interval in front of, around, across or behind a reading, or none, or nonsense.
 std::pair<float, float> interval(float depth_m, Draw& draw) {
   if (draw.one_in(20)) {
-    return {draw.one_of({kNaN, -1.0F, kInf, 0.5F}), draw.one_of({kNaN, kInf, -kInf, 0.25F, 3e38F})};
+    return {draw.one_of({kNaN, -1.0F, kInfinite, 0.5F}), draw.one_of({kNaN, kInfinite, -kInfinite, 0.25F, 3e38F})};
   }
   const auto begin = static_cast<float>(draw.uniform(-0.4, 0.2));
   const float near_m = std::max(depth_m + begin, 0.0F);

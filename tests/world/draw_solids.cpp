@@ -54,7 +54,7 @@ std::vector<Vector3d> places_of_robot(const World& world) {
   return places;
 }
 
-void break_one(World& world) {
+void break_a_solid(World& world) {
   Random random(world.options.seed, 92);
   for (Solid& solid : world.solids) {
     const bool thin = world.options.broken == Broken::thinner || world.options.broken == Broken::black;
@@ -151,7 +151,7 @@ void draw_solids(World& world) {
   for (Solid& solid : world.solids) {
     solid.black = random.chance(black);
   }
-  break_one(world);
+  break_a_solid(world);
 }
 
 }  // namespace depthgrid::world

@@ -9,7 +9,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Instants of a rolling or long exposure.
-constexpr int kInstants = 5;
+constexpr int kInstantsOfRays = 5;
 /// Of a rolling one each row reads the instants that are no farther from its own, in instants: so whatever moves from
 /// row to row, but not faster than a few at a time, is met by one of them.
 constexpr double kRowReads = 1.2;
@@ -68,9 +68,9 @@ DepthView Sensor::take(const Exposure& exposure) {
     const double part = random.chance(0.5) ? random.uniform(-1, 1) : random.chance(0.5) ? 1.0 : -1.0;
     look(exposure.mid_s + part * half_s, 0, last_row);
   } else {
-    for (int i = 0; i < kInstants; ++i) {
-      const double time_s = exposure.mid_s + half_s * (2.0 * i / (kInstants - 1) - 1);
-      const double rows = camera_.shutter == Shutter::rolling ? last_row / (kInstants - 1.0) : 0.0;
+    for (int i = 0; i < kInstantsOfRays; ++i) {
+      const double time_s = exposure.mid_s + half_s * (2.0 * i / (kInstantsOfRays - 1) - 1);
+      const double rows = camera_.shutter == Shutter::rolling ? last_row / (kInstantsOfRays - 1.0) : 0.0;
       const int first = rows > 0 ? std::max(0, static_cast<int>(std::floor((i - kRowReads) * rows))) : 0;
       const int last = rows > 0 ? std::min(last_row, static_cast<int>(std::ceil((i + kRowReads) * rows))) : last_row;
       look(time_s, first, last);
