@@ -90,8 +90,11 @@ set(CMAKE_PCH_WARN_INVALID OFF)
 function(depthgrid_reuse_test_headers target)
   # What tests compute themselves is little beside what the libraries and the oracles compute, which are optimised in full.
   # Nor is undefined behaviour looked for there, which doubles the compiler's time.
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>
-    $<$<BOOL:${DEPTHGRID_SANITIZE}>:-fno-sanitize=undefined>)
+  set(options $<$<CONFIG:Release>:-O1>)
+  if(DEPTHGRID_SANITIZE)
+    list(APPEND options -fno-sanitize=undefined)
+  endif()
+  target_compile_options(${target} PRIVATE ${options})
   if(CMAKE_CXX_COMPILER_LAUNCHER)
     return()
   endif()
@@ -102,8 +105,7 @@ function(depthgrid_reuse_test_headers target)
     target_precompile_headers(depthgrid_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h> <Eigen/Geometry> <algorithm>
       <array> <cmath> <functional> <limits> <random> <sstream> <string> <vector>)
     depthgrid_compile_options(depthgrid_test_headers)
-    target_compile_options(depthgrid_test_headers PRIVATE $<$<CONFIG:Release>:-O1>
-      $<$<BOOL:${DEPTHGRID_SANITIZE}>:-fno-sanitize=undefined>)
+    target_compile_options(depthgrid_test_headers PRIVATE ${options})
   endif()
   target_link_libraries(${target} PRIVATE depthgrid::core)  # the same definitions
   # With them g++ 12 sees an endless copy inside std::string where there is none ("a" + text + "b"), under both names.

@@ -63,7 +63,7 @@ std::vector<Range> ranges_of(const std::string& text, long first, long last) {
 }
 
 /// Numbers of all ranges, ascending, without repetition.
-std::vector<int> numbers_of(const std::vector<Range>& ranges) {
+std::vector<int> frame_numbers_of(const std::vector<Range>& ranges) {
   constexpr std::size_t kMostFrames = 10'000'000;
   std::vector<int> frames;
   for (const Range& range : ranges) {
@@ -83,7 +83,7 @@ std::vector<int> numbers_of(const std::vector<Range>& ranges) {
 }  // namespace
 
 std::vector<int> select_frames(const std::string& text, int first, int count) {
-  return numbers_of(ranges_of(text, first, static_cast<long>(first) + count - 1));
+  return frame_numbers_of(ranges_of(text, first, static_cast<long>(first) + count - 1));
 }
 
 std::vector<int> select_frames(const std::string& text, const files::Recording& recording) {

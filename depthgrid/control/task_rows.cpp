@@ -10,7 +10,7 @@ namespace {
 /// A direction that moves by less than this share of the floor is none: below it the rows would not be orthonormal.
 constexpr double kNoDirection = 1e-3;
 
-using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxTaskRows, kMaxTaskRows>;
+using TaskGram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxTaskRows, kMaxTaskRows>;
 
 double phi_of(double s, double floor) noexcept {
   if (s >= floor) {
@@ -27,8 +27,8 @@ TaskRows::TaskRows(const TaskJacobian& jacobian, const JointRows& taken, double 
   if (taken.rows() > 0) {
     left.noalias() -= (jacobian * taken.transpose()).eval() * taken;
   }
-  const Gram gram = left * left.transpose();
-  const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram);
+  const TaskGram gram = left * left.transpose();
+  const Eigen::SelfAdjointEigenSolver<TaskGram> eigen(gram);
   const auto rows = static_cast<int>(jacobian.rows());
   const auto room = static_cast<int>(jacobian.cols() - taken.rows());
   rows_.resize(0, jacobian.cols());

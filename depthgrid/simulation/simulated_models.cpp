@@ -9,7 +9,7 @@ namespace depthgrid::simulation {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 /// Nguyen, Izadi and Lovell 2012 for the noise; 1/z in steps of 1 / (8 f b) with the sensor's own focal length of 575
 /// px.
@@ -26,7 +26,7 @@ SensorSimulation kinect_v1() {
   s.baseline_m = kBaseline;
   s.flying_share = 0.2;
   s.dropout_share = 0.002;
-  s.largest_slant_rad = 80 * kDegree;
+  s.largest_slant_rad = 80 * kRadPerDegree;
   s.near_m = 0.5;
   s.far_m = 10;
   s.structured_light = true;
@@ -46,7 +46,7 @@ SensorSimulation stereo(const SensorModel& model, const PinholeCamera& camera) {
   s.baseline_m = noise.baseline_m;
   s.flying_share = 0.1;
   s.dropout_share = 0.005;
-  s.largest_slant_rad = 80 * kDegree;
+  s.largest_slant_rad = 80 * kRadPerDegree;
   s.near_m = model.rule.near_m;
   s.far_m = 10;
   return s;
@@ -59,7 +59,7 @@ SensorSimulation azure_kinect(const SensorModel& model) {
   s.bias_linear = 0.001;
   s.flying_share = 0.5;
   s.dropout_share = 0.001;
-  s.largest_slant_rad = 85 * kDegree;
+  s.largest_slant_rad = 85 * kRadPerDegree;
   s.near_m = model.rule.near_m;
   s.far_m = model.rule.far_m;
   return s;

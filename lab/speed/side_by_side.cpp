@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSlow = 1.0;         ///< seconds for a frame set: at most three of them
 constexpr double kSlowQuery = 0.005;  ///< seconds for nine points: only where the oracle looks
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 constexpr int kTruthSubStep = 8;  ///< beside sub-step 0
 
 /// Sub-steps that the oracle knows come first.
@@ -25,7 +25,7 @@ struct Row {
   Samples far_s, deep_s;
   Samples our_cycle_s, our_nine_s;
   Samples over_m, under_m;
-  double memory_bytes = kNaN;
+  double memory_bytes = kUnmeasured;
 };
 
 void compare(const std::vector<Stage::Truth>& truths, const std::vector<double>& distances_m, Row& row) {

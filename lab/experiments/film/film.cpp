@@ -23,7 +23,7 @@ constexpr int kEveryFrame = 3;  ///< of the cameras' frames
 constexpr int kWidth = 480;     ///< of a side
 constexpr int kHeight = 400;
 constexpr double kBelow = 84;  ///< for the text
-constexpr double kGap = 8;
+constexpr double kBetween = 8;
 constexpr double kCube_m = 0.05;
 
 const Vector3d kEye_world(2.35, 2.25, 1.75);
@@ -98,10 +98,10 @@ std::array<std::string, 2> in_two_lines(const report::Canvas& canvas, const std:
 }
 
 report::Canvas picture_of(const std::array<std::vector<Moment>, 2>& sides, std::size_t n) {
-  report::Canvas canvas(static_cast<int>(2 * kWidth + kGap), static_cast<int>(30 + kHeight + kBelow));
+  report::Canvas canvas(static_cast<int>(2 * kWidth + kBetween), static_cast<int>(30 + kHeight + kBelow));
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const Moment& moment = sides[i][n];
-    const double left = static_cast<double>(i) * (kWidth + kGap);
+    const double left = static_cast<double>(i) * (kWidth + kBetween);
     const report::Rectangle area{left, 30, kWidth, kHeight};
     canvas.raster(area, moment.view);
     canvas.clip(area);
@@ -118,9 +118,9 @@ report::Canvas picture_of(const std::array<std::vector<Moment>, 2>& sides, std::
     canvas.text({left + 6, below + 42}, lines[0], 13);
     canvas.text({left + 6, below + 60}, lines[1], 13);
   }
-  canvas.text({2 * kWidth + kGap - 6, 30 + kHeight + kBelow - 6}, "gray: not known free, may hold something", 13,
+  canvas.text({2 * kWidth + kBetween - 6, 30 + kHeight + kBelow - 6}, "gray: not known free, may hold something", 13,
               report::kBlack, report::Align::right);
-  canvas.text({2 * kWidth + kGap - 6, 20},
+  canvas.text({2 * kWidth + kBetween - 6, 20},
               report::fixed(static_cast<double>(n) * kEveryFrame / kFrameRate_hz, 1) + " s", 15, report::kBlack,
               report::Align::right);
   return canvas;

@@ -14,8 +14,8 @@ namespace depthgrid::experiments {
 namespace {
 
 constexpr double kTile = 400;  ///< width of an image in the picture
-constexpr double kGap = 10;
-constexpr double kTitle = 24;
+constexpr double kTileGap = 10;
+constexpr double kTileTitle = 24;
 constexpr double kLegend = 44;
 constexpr double kPlot = 300;
 constexpr std::size_t kColumns = 3;
@@ -45,26 +45,26 @@ AnswerTile answer_tile(std::string title, const CameraImages& images, std::size_
 report::Canvas draw_comparison(const std::vector<AnswerTile>& tiles, const std::vector<report::Plot>& plots) {
   const std::size_t columns = std::min(kColumns, tiles.size());
   const std::size_t rows = (tiles.size() + columns - 1) / columns;
-  const double tile_height = 0.75 * kTile + kTitle + kGap;
-  const double width = kGap + static_cast<double>(columns) * (kTile + kGap);
+  const double tile_height = 0.75 * kTile + kTileTitle + kTileGap;
+  const double width = kTileGap + static_cast<double>(columns) * (kTile + kTileGap);
   const double plots_begin = static_cast<double>(rows) * tile_height + kLegend;
   report::Canvas canvas(static_cast<int>(width),
-                        static_cast<int>(plots_begin + static_cast<double>(plots.size()) * kPlot + kGap));
+                        static_cast<int>(plots_begin + static_cast<double>(plots.size()) * kPlot + kTileGap));
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     const std::size_t row = i / columns;
     const std::size_t column = i % columns;
     draw_tile(canvas,
-              {kGap + static_cast<double>(column) * (kTile + kGap), static_cast<double>(row) * tile_height + kTitle,
-               kTile, 0.75 * kTile},
+              {kTileGap + static_cast<double>(column) * (kTile + kTileGap),
+               static_cast<double>(row) * tile_height + kTileTitle, kTile, 0.75 * kTile},
               tiles[i]);
   }
   const double legend_y = static_cast<double>(rows) * tile_height;
-  report::draw_depth_legend(canvas, {kGap, legend_y, 240, 10}, kRange);
+  report::draw_depth_legend(canvas, {kTileGap, legend_y, 240, 10}, kRange);
   if (std::any_of(tiles.begin(), tiles.end(), [](const AnswerTile& tile) { return tile.answers != nullptr; })) {
-    report::draw_distance_legend(canvas, {kGap + 300, legend_y, 240, 10}, DistanceMethod::kRho);
+    report::draw_distance_legend(canvas, {kTileGap + 300, legend_y, 240, 10}, DistanceMethod::kRho);
   }
   for (std::size_t i = 0; i < plots.size(); ++i) {
-    draw_plot(canvas, {kGap, plots_begin + static_cast<double>(i) * kPlot, width - 2 * kGap, kPlot}, plots[i]);
+    draw_plot(canvas, {kTileGap, plots_begin + static_cast<double>(i) * kPlot, width - 2 * kTileGap, kPlot}, plots[i]);
   }
   return canvas;
 }
