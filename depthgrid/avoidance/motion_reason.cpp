@@ -9,6 +9,9 @@
 namespace depthgrid::avoidance {
 namespace {
 
+/// Rounded up, for people: an arm that all but stands is not told in powers of ten.
+double whole_tenths_of_mm(double length_m) noexcept { return std::fmax(0.0, std::ceil(length_m * 1e4 - 1e-6) / 1e4); }
+
 /// What is nearest, and what is remembered of it.
 void add_nearest(ShortText& line, const MotionReason& reason) noexcept {
   Proximity nearest;
@@ -86,7 +89,7 @@ std::string_view describe(const MotionReason& reason, std::span<char> buffer) no
   ShortText line(buffer);
   add_what_limits(line, reason);
   if (reason.limit != MotionLimit::none && std::isfinite(reason.braking_m)) {
-    line.add(", stands within ").add(reason.braking_m, " m");
+    line.add(", stands within ").add(whole_tenths_of_mm(reason.braking_m), " m");
   }
   if (reason.late_camera && reason.limit != MotionLimit::no_joint_state) {
     line.add("; camera ").add_count(*reason.late_camera);

@@ -252,6 +252,10 @@ TEST_F(BlindStop, ReasonsAreOneSentence) {
     EXPECT_EQ(sentence(reason), words);
     EXPECT_EQ(brakes(limit), std::string(words).starts_with("braking"));
   }
+  reason.braking_m = 0.008331;
+  EXPECT_THAT(sentence(reason), HasSubstr("stands within 0.0084 m")) << "rounded up";
+  reason.braking_m = 1.51e-30;
+  EXPECT_THAT(sentence(reason), HasSubstr("stands within 0 m"));
   reason.limit = MotionLimit::no_images;
   reason.late_camera = 2;
   EXPECT_THAT(sentence(reason), HasSubstr("; camera 2 has no image"));
