@@ -110,7 +110,7 @@ HWY_INLINE Block pixel_shows_not_free(const views::LocalCamera& camera, const Pl
   const float right = (static_cast<float>(u) + 0.5F - camera.cx) / camera.fx;
   const float down = (static_cast<float>(v) + 0.5F - camera.cy) / camera.fy;
   const float by_square = 1 / (1 + right * right + down * down);
-  const auto square = hn::Set(d, least_m * least_m);
+  const auto square = hn::Set(d, std::max(least_m, 0.0F) * std::max(least_m, 0.0F));
   const auto x = hn::Set(d, right);
   const auto y = hn::Set(d, down);
   return each_layer(places, asked, [&](const Layer& p) HWY_ATTR {
@@ -143,6 +143,9 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
   const int height = image.free_m.height_px();
   const auto lanes = static_cast<int>(hn::Lanes(d));
   const int end = width * height - lanes;
+  if (end < 0) {
+    return {};  // fewer pixels than lanes: left to the exact test
+  }
   const float square = most_m * most_m;
   const float by = 1 / (z * z - square);
   const auto pixels = [&](float a, float f, float c, int size, int& low, int& high) {
@@ -163,7 +166,7 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
   const float by_fy = 1 / camera.fy;
   const float half_pixel_m = 0.7072F * (z + most_m) * std::max(by_fx, by_fy);
   const auto far_end = hn::Set(d, z + most_m);
-  const auto touching = hn::Set(d, least_m * least_m);
+  const auto touching = hn::Set(d, std::max(least_m, 0.0F) * std::max(least_m, 0.0F));
   const auto clear = hn::Set(d, (most_m + half_pixel_m) * (most_m + half_pixel_m));
   const auto first_column = hn::Set(d, static_cast<float>(first_u));
   const auto last_column = hn::Set(d, static_cast<float>(last_u));
