@@ -191,7 +191,7 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
         continue;
       }
       const auto columns = hn::Iota(d, static_cast<float>(at - row * width));
-      const float top = static_cast<float>(row);
+      const auto top = static_cast<float>(row);
       near = hn::And(near, hn::And(hn::Ge(columns, first_column), hn::Le(columns, last_column)));
       if (hn::AllFalse(d, near)) {
         continue;

@@ -137,8 +137,8 @@ void make_windows(const TileArrays& tiles, const DepthPlanes::Level& level, int 
   const auto side = static_cast<float>(1 << level.shift);
   const auto width = static_cast<std::size_t>(level.width);
   const std::size_t first = static_cast<std::size_t>(level.offset) + static_cast<std::size_t>(j) * width;
-  const float fx = static_cast<float>(camera.fx_px);
-  const float fy = static_cast<float>(camera.fy_px);
+  const auto fx = static_cast<float>(camera.fx_px);
+  const auto fy = static_cast<float>(camera.fy_px);
   const V by = hn::Set(d, 1 / (20 * side));
   const V v_away = hn::Set(d, static_cast<float>(camera.cy_px) - side * static_cast<float>(j + 2));
   for (std::size_t i = 0; i + DepthPlanes::kTiles <= width; i += hn::Lanes(d)) {
@@ -192,7 +192,7 @@ int tiles_along(int pixels) noexcept { return std::max((pixels + kTile - 1) / kT
 
 /// The tiles of a level from the four below each; at the border the last one again.
 void join_tiles(const DepthPlanes::Level& below, const DepthPlanes::Level& level, const TileArrays& tiles) noexcept {
-  const float side = static_cast<float>(1 << below.shift);
+  const auto side = static_cast<float>(1 << below.shift);
   for (int j = 0; j < level.height; ++j) {
     for (int i = 0; i < level.width; ++i) {
       std::array<std::size_t, 4> from{};
@@ -257,73 +257,105 @@ void DepthPlanes::lay_out(int width_px, int height_px) noexcept {
   }
 }
 
+namespace {
+
+constexpr std::size_t kTileColumns = kTile;
+
+/// Rows of one row of tiles: inverse depths of the free space and, from kTile on, of what is free or an island.
+using ScratchRows = std::array<float*, 2 * kTile + 8>;
+
+/// The inverse depths of row j of tiles; below the image its last row again.
+TileRow invert_rows(const views::PreparedImage& image, int j, const ScratchRows& rows, std::size_t stride,
+                    std::size_t columns) noexcept {
+  TileRow row{rows[0], rows[0], stride, columns};
+  const auto width = size(image.free_m.width_px());
+  for (int v = 0; v < kTile; ++v) {
+    const int at = std::min(j * kTile + v, image.free_m.height_px() - 1);
+    const float* free_m = image.free_m.data() + image.free_m.index(0, at);
+    HWY_DYNAMIC_DISPATCH(invert)(free_m, nullptr, width, rows[size(v)], columns);
+    if (image.has_islands) {
+      const bool islands = !image.island_bands[size(at / views::PreparedImage::kBandRows)].empty();
+      row.far_side = rows[kTileColumns];
+      HWY_DYNAMIC_DISPATCH(invert)
+      (free_m, islands ? image.island_far_m.data() + image.island_far_m.index(0, at) : nullptr, width,
+       rows[kTileColumns + size(v)], columns);
+    }
+  }
+  return row;
+}
+
+/// The plane through `count` tiles from `begin` on, by least squares of their columns' sums, and its value in each
+/// column: at the first row, and the step from row to row.
+void fit_tiles(const TileArrays& tiles, std::size_t begin, std::size_t count, const float* sums, const float* moments,
+               float* plane, float* steps) noexcept {
+  constexpr float kMiddle = 0.5F * (kTile - 1);
+  constexpr float kSquares = kTile * kTile * (kTile * kTile - 1) / 12.0F;  ///< of the pixels' places along one axis
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i * kTileColumns;
+    float sum = 0;
+    float right = 0;
+    float down = 0;
+    for (std::size_t u = 0; u < kTileColumns; ++u) {
+      sum += sums[from + u];
+      right += sums[from + u] * (static_cast<float>(u) - kMiddle);
+      down += moments[from + u];
+    }
+    const std::size_t at = begin + i;
+    tiles.mean[at] = sum / (kTile * kTile);
+    tiles.right[at] = right / kSquares;
+    tiles.down[at] = down / kSquares;
+    for (std::size_t u = 0; u < kTileColumns; ++u) {
+      plane[from + u] = tiles.right[at] * (static_cast<float>(u) - kMiddle) - tiles.down[at] * kMiddle;
+      steps[from + u] = tiles.down[at];
+    }
+  }
+}
+
+/// How far the values of each tile lie beside its plane, and their extrema, from those of its columns.
+void bound_tiles(const TileArrays& tiles, std::size_t begin, std::size_t count, const float* most, const float* least,
+                 const float* nearest, const float* farthest) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = begin + i;
+    const std::size_t from = i * kTileColumns;
+    const std::size_t end = from + kTileColumns;
+    const float pixel = 0.5F * (std::abs(tiles.right[at]) + std::abs(tiles.down[at]));
+    tiles.most[at] = *std::max_element(most + from, most + end) + pixel;
+    tiles.nearest[at] = *std::max_element(nearest + from, nearest + end);
+    tiles.farthest[at] = *std::min_element(farthest + from, farthest + end);
+    tiles.least[at] = *std::min_element(least + from, least + end) - pixel;
+  }
+}
+
+}  // namespace
+
 void DepthPlanes::update(const views::PreparedImage& image, const PinholeCamera& camera) noexcept {
-  const int width_px = image.free_m.width_px();
-  const int height_px = image.free_m.height_px();
-  lay_out(width_px, height_px);
+  lay_out(image.free_m.width_px(), image.free_m.height_px());
   const Level& first = levels_.front();
-  const std::size_t columns = size(first.width) * kTile;
+  const std::size_t columns = size(first.width) * kTileColumns;
   const std::size_t stride = columns + kBehind;
-  std::array<float*, 2 * kTile + 8> rows{};
+  ScratchRows rows{};
   for (std::size_t n = 0; n < rows.size(); ++n) {
     rows[n] = &rows_[n * stride];
   }
-  float* const sums = rows[2 * kTile];
-  float* const moments = rows[2 * kTile + 1];
-  float* const plane = rows[2 * kTile + 2];
-  float* const steps = rows[2 * kTile + 3];
-  float* const most = rows[2 * kTile + 4];
-  float* const least = rows[2 * kTile + 5];
-  float* const nearest = rows[2 * kTile + 6];
-  float* const farthest = rows[2 * kTile + 7];
-  constexpr float kMiddle = 0.5F * (kTile - 1);
-  constexpr float kSquares = kTile * kTile * (kTile * kTile - 1) / 12.0F;  ///< of the pixels' places along one axis
-  for (int j = 0; j < first.height; ++j) {
-    TileRow row{rows[0], rows[0], stride, columns};
-    for (int v = 0; v < kTile; ++v) {
-      const int at = std::min(j * kTile + v, height_px - 1);
-      const bool islands = image.has_islands && !image.island_bands[size(at / views::PreparedImage::kBandRows)].empty();
-      const float* free_m = image.free_m.data() + image.free_m.index(0, at);
-      HWY_DYNAMIC_DISPATCH(invert)(free_m, nullptr, size(width_px), rows[size(v)], columns);
-      if (image.has_islands) {
-        row.far_side = rows[kTile];
-        HWY_DYNAMIC_DISPATCH(invert)
-        (free_m, islands ? image.island_far_m.data() + image.island_far_m.index(0, at) : nullptr, size(width_px),
-         rows[kTile + size(v)], columns);
-      }
-    }
-    HWY_DYNAMIC_DISPATCH(add_columns)(row, sums, moments, nearest, farthest);
-    const std::size_t begin = size(j) * size(first.width);
-    for (int i = 0; i < first.width; ++i) {
-      float sum = 0;
-      float right = 0;
-      float down = 0;
-      for (int u = 0; u < kTile; ++u) {
-        sum += sums[i * kTile + u];
-        right += sums[i * kTile + u] * (static_cast<float>(u) - kMiddle);
-        down += moments[i * kTile + u];
-      }
-      const std::size_t at = begin + size(i);
-      tiles_.mean[at] = sum / (kTile * kTile);
-      tiles_.right[at] = right / kSquares;
-      tiles_.down[at] = down / kSquares;
-      for (int u = 0; u < kTile; ++u) {
-        plane[i * kTile + u] = tiles_.right[at] * (static_cast<float>(u) - kMiddle) - tiles_.down[at] * kMiddle;
-        steps[i * kTile + u] = tiles_.down[at];
-      }
-    }
-    HWY_DYNAMIC_DISPATCH(bound_columns)(row, plane, steps, most, least);
-    for (int i = 0; i < first.width; ++i) {
-      const std::size_t at = begin + size(i);
-      const float pixel = 0.5F * (std::abs(tiles_.right[at]) + std::abs(tiles_.down[at]));
-      tiles_.most[at] = *std::max_element(most + i * kTile, most + (i + 1) * kTile) + pixel;
-      tiles_.nearest[at] = *std::max_element(nearest + i * kTile, nearest + (i + 1) * kTile);
-      tiles_.farthest[at] = *std::min_element(farthest + i * kTile, farthest + (i + 1) * kTile);
-      tiles_.least[at] = *std::min_element(least + i * kTile, least + (i + 1) * kTile) - pixel;
-    }
-  }
+  float* const* const scratch = rows.data() + 2 * kTileColumns;
+  float* const sums = scratch[0];
+  float* const moments = scratch[1];
+  float* const plane = scratch[2];
+  float* const steps = scratch[3];
+  float* const most = scratch[4];
+  float* const least = scratch[5];
+  float* const nearest = scratch[6];
+  float* const farthest = scratch[7];
   const TileArrays tiles{tiles_.mean.data(),  tiles_.right.data(),   tiles_.down.data(),    tiles_.most.data(),
                          tiles_.least.data(), tiles_.nearest.data(), tiles_.farthest.data()};
+  for (int j = 0; j < first.height; ++j) {
+    const TileRow row = invert_rows(image, j, rows, stride, columns);
+    const std::size_t begin = size(j) * size(first.width);
+    HWY_DYNAMIC_DISPATCH(add_columns)(row, sums, moments, nearest, farthest);
+    fit_tiles(tiles, begin, size(first.width), sums, moments, plane, steps);
+    HWY_DYNAMIC_DISPATCH(bound_columns)(row, plane, steps, most, least);
+    bound_tiles(tiles, begin, size(first.width), most, least, nearest, farthest);
+  }
   for (std::size_t n = 0; n < level_count_; ++n) {
     const Level& level = levels_[n];
     if (n > 0) {

@@ -73,9 +73,58 @@ HWY_INLINE std::array<Border, kBorders> borders_of(const views::LocalCamera& cam
 
 /// Up to eight blocks.
 struct EightBlocks {
-  alignas(64) std::array<float, 8> x, y, z, near_limit, far_limit, plane_x, plane_y,
+  alignas(64) std::array<float, 8> x, y, z, near_limit, far_limit, plane_x, plane_y, plane_z_near, plane_z_far,
       plane_near, plane_far, least, most, near_z, far_z, range;
 };
+
+/// What an image shows of the voxels of one block; the others are not free.
+struct BlockSeen {
+  Block freed = 0;
+  Block open = 0;  ///< left to the exact test
+};
+
+/// Block i of eight, of which something may be free and something not: voxel by voxel.
+HWY_INLINE BlockSeen look_into_block(const views::LocalCamera& camera, const std::array<Border, kBorders>& borders,
+                                     const EightBlocks& eight, std::size_t i, float voxel_m, Block voxels,
+                                     bool is_inside, bool is_in_front) {
+  BlockSeen seen{0, voxels};
+  Block within = kWholeBlock;
+  if (!is_inside) {
+    for (const Border& border : borders) {
+      const float middle =
+          border.row[0] * eight.x[i] + border.row[1] * eight.y[i] + border.row[2] * eight.z[i] - border.beyond;
+      const Slope slope = slope_in_block(camera, voxel_m, border.row, middle);
+      within &= above(slope, eight.most[i]);
+      seen.open &= above(slope, eight.least[i]);
+    }
+  }
+  if (is_in_front) {
+    const Places places{slope_in_block(camera, voxel_m, {1, 0, 0}, eight.x[i]),
+                        slope_in_block(camera, voxel_m, {0, 1, 0}, eight.y[i]),
+                        slope_in_block(camera, voxel_m, {0, 0, 1}, eight.z[i])};
+    const auto plane = [&](float by_z, float middle) {
+      return slope_in_block(camera, voxel_m, {eight.plane_x[i], eight.plane_y[i], by_z}, middle);
+    };
+    seen.open &= ~above(places[2], eight.far_z[i]);
+    seen.open &= ~above(plane(eight.plane_z_far[i], eight.plane_far[i]), eight.far_limit[i]);
+    seen.freed = ~above(places[2], eight.near_z[i]);
+    seen.freed |= ~above(plane(eight.plane_z_near[i], eight.plane_near[i]), eight.near_limit[i]);
+    seen.freed &= within & seen.open;
+    seen.open &= ~seen.freed;
+    if (seen.open != 0) {
+      seen.open &= ~centre_shows_not_free(camera, places, seen.open, eight.least[i], eight.range[i]);
+    }
+    Block rest_inside = seen.open & within;
+    seen.open &= ~rest_inside;
+    if (rest_inside != 0) {
+      seen.freed |= look_at_voxels(camera, places, eight.least[i], eight.most[i], rest_inside);
+    }
+    seen.open |= rest_inside;
+  }
+  seen.freed &= voxels;
+  seen.open &= ~seen.freed;
+  return seen;
+}
 
 std::int64_t look_at_row(const Carver& carver, const BlockRow& row) {
   const Floats d;
@@ -85,7 +134,7 @@ std::int64_t look_at_row(const Carver& carver, const BlockRow& row) {
   const V half = hn::Set(d, half_m);
   const V diagonal = hn::Set(d, 1.7320509F * half_m);
   std::int64_t removed = 0;
-  EightBlocks eight;
+  EightBlocks eight;  // NOLINT(*-member-init): written before each block is looked into
   for (std::size_t begin = 0; begin < row.count; begin += hn::Lanes(d)) {
     const std::size_t count = std::min(row.count - begin, hn::Lanes(d));
     std::uint32_t here = 0;
@@ -188,56 +237,19 @@ std::int64_t look_at_row(const Carver& carver, const BlockRow& row) {
     hn::Store(planes.y, d, eight.plane_y.data());
     hn::Store(least, d, eight.least.data());
     hn::Store(most, d, eight.most.data());
-    alignas(64) std::array<float, 8> z_near;
-    alignas(64) std::array<float, 8> z_far;
     hn::Store(far_range, d, eight.range.data());
     hn::Store(near_z, d, eight.near_z.data());
     hn::Store(far_z, d, eight.far_z.data());
-    hn::Store(planes.z_near, d, z_near.data());
-    hn::Store(planes.z_far, d, z_far.data());
+    hn::Store(planes.z_near, d, eight.plane_z_near.data());
+    hn::Store(planes.z_far, d, eight.plane_z_far.data());
     for (std::uint32_t rest = split; rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       Block& voxels = row.voxels[begin + i];
-      Block freed = 0;
-      Block open = voxels;
-      Block within = kWholeBlock;
-      if (((is_inside >> i) & 1U) == 0) {
-        for (const Border& border : borders) {
-          const float middle =
-              border.row[0] * eight.x[i] + border.row[1] * eight.y[i] + border.row[2] * eight.z[i] - border.beyond;
-          const Slope slope = slope_in_block(camera, row.voxel_m, border.row, middle);
-          within &= above(slope, eight.most[i]);
-          open &= above(slope, eight.least[i]);
-        }
-      }
-      if (((is_in_front >> i) & 1U) != 0) {
-        const Places places{slope_in_block(camera, row.voxel_m, {1, 0, 0}, eight.x[i]),
-                            slope_in_block(camera, row.voxel_m, {0, 1, 0}, eight.y[i]),
-                            slope_in_block(camera, row.voxel_m, {0, 0, 1}, eight.z[i])};
-        open &= ~above(places[2], eight.far_z[i]);
-        open &= ~above(
-            slope_in_block(camera, row.voxel_m, {eight.plane_x[i], eight.plane_y[i], z_far[i]}, eight.plane_far[i]),
-            eight.far_limit[i]);
-        freed = ~above(places[2], eight.near_z[i]);
-        freed |= ~above(
-            slope_in_block(camera, row.voxel_m, {eight.plane_x[i], eight.plane_y[i], z_near[i]}, eight.plane_near[i]),
-            eight.near_limit[i]);
-        freed &= within & open;
-        open &= ~freed;
-        if (open != 0) {
-          open &= ~centre_shows_not_free(camera, places, open, eight.least[i], eight.range[i]);
-        }
-        Block rest_inside = open & within;
-        open &= ~rest_inside;
-        if (rest_inside != 0) {
-          freed |= look_at_voxels(camera, places, eight.least[i], eight.most[i], rest_inside);
-        }
-        open |= rest_inside;
-      }
-      freed &= voxels;
-      removed += std::popcount(freed);
-      voxels &= ~freed;
-      row.open[begin + i] = open & ~freed;
+      const BlockSeen seen = look_into_block(camera, borders, eight, i, row.voxel_m, voxels,
+                                             ((is_inside >> i) & 1U) != 0, ((is_in_front >> i) & 1U) != 0);
+      removed += std::popcount(seen.freed);
+      voxels &= ~seen.freed;
+      row.open[begin + i] = seen.open;
     }
   }
   return removed;
