@@ -65,6 +65,9 @@ bool read_header(Reader& reader) noexcept {
   png_set_sig_bytes(reader.png, kSignatureBytes);
   // Sizes are checked below, with a message of our own; libpng's limit would hide the value.
   png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+  // Texts, colour profiles and the like say nothing about depth, and a broken length of theirs would have libpng take
+  // up to 2 GiB of memory before it finds that the file is shorter: all are skipped as they come.
+  png_set_keep_unknown_chunks(reader.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   png_read_info(reader.png, reader.info);
   return true;
 }
