@@ -88,6 +88,15 @@ void check_lens(const PinholeCamera& camera, const Distortion& lens, const char*
          " px from the principal point, in an image of ", camera.width_px, " x ", camera.height_px,
          " px; are they in another order, of another model, or for another image size?");
   }
+  // And by less than that it narrows what the image shows, with coefficients that grow the other way.
+  constexpr double kLeastView = 1.0 / 3;  // of the tangent at the nearer border
+  const double shown = kLeastView * middle;
+  if (radial(lens, square(shown)).factor > 1 / kLeastView) {
+    fail(name, ": distortion: by the coefficients the image's border shows less than ",
+         std::atan(shown) * 180 / std::numbers::pi, " degrees off the axis, by the focal length alone ",
+         std::atan(middle) * 180 / std::numbers::pi,
+         "; are they in another order, of another model, or for another image size?");
+  }
 }
 
 void check_at_most(const char* name, const char* what, double value, double largest, const char* unit,

@@ -58,6 +58,11 @@ TEST(Plausibility, DistortionOfAnotherModelOrOrder) {
   EXPECT_THAT(of_camera(camera, plumb_bob({-30, 0, 0, 0, 0})), HasSubstr("the coefficients fold back 37 px"));
   EXPECT_THAT(of_camera(camera, make_distortion(Distortion::Model::equidistant, std::vector<double>{-0.6, 0, 0, 0})),
               HasSubstr("degrees off the axis"));
+  // Thousandths of what they should be: then the image shows no more than its middle.
+  EXPECT_THAT(of_camera(camera, plumb_bob({100, 0, 0, 0, 0})), HasSubstr("shows less than 8.6"));
+  EXPECT_THAT(of_camera(camera, make_distortion(Distortion::Model::equidistant, std::vector<double>{200, 0, 0, 0})),
+              HasSubstr("the image's border shows less than"));
+  EXPECT_EQ(of_camera(camera, plumb_bob({0.8, 0.5, 0, 0, 0})), "") << "more than any lens bends outwards";
   // 0.1 everywhere, as in a file that only shows the form, folds nowhere near the image.
   EXPECT_EQ(of_camera(camera, make_distortion(Distortion::Model::rational, std::vector<double>(8, 0.1))), "");
 }
