@@ -75,6 +75,8 @@ Corners ascii_corners(std::string_view text, const std::string& context) {
       check_size(corners.size(), context);
       facet.clear();
       in_facet = false;
+    } else if (!in_facet && !in_solid && !corners.empty() && lower_case(text).find("facet") == std::string::npos) {
+      break;  // bytes after the last solid
     } else if (!in_facet) {
       fail(context, "ASCII STL: '", shown(word), "' stands where 'facet' or 'endsolid' must");
     }
