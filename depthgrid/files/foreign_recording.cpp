@@ -24,13 +24,14 @@ struct Container {
 };
 
 constexpr const char* kRosTool = "the Python package rosbags reads it";
-constexpr std::array<Container, 6> kContainers{{
+constexpr std::array<Container, 7> kContainers{{
     {".bag", "#ROSBAG V", "a ROS 1 bag, as rosbag and RealSense cameras write it", kRosTool},
     {".mcap", "\x89MCAP0\r\n", "an MCAP file, as ROS 2 writes it", kRosTool},
     {".db3", "", "a ROS 2 bag", kRosTool},
     {".oni", "NI10", "an OpenNI recording of a Kinect or Xtion", "OpenNI 2 reads it"},
     {".mkv", "", "a Matroska recording, as Azure Kinects write it", "the Azure Kinect SDK reads it"},
     {".svo", "", "a recording of a ZED camera", "the ZED SDK reads it"},
+    {".svo2", "", "a recording of a ZED camera", "the ZED SDK reads it"},
 }};
 
 [[noreturn]] void refuse(const fs::path& path, const Container& container) {
@@ -49,6 +50,21 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
+/// Whether it looks like the folder of a ROS 2 bag.
+bool holds_a_bag(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / "metadata.yaml", error)) {
+    return true;
+  }
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string extension = lower_extension(entry->path());
+    if (extension == ".mcap" || extension == ".db3") {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Nothing where it cannot be read: whoever reads it says why.
 std::string first_bytes(const fs::path& file) {
   try {
@@ -65,16 +81,17 @@ std::string first_bytes(const fs::path& file) {
 void refuse_foreign_recording(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
-    if (fs::exists(path / "metadata.yaml", ignored) && !fs::exists(path / "rig.json", ignored)) {
+    if (holds_a_bag(path) && !fs::exists(path / "rig.json", ignored)) {
       refuse(path, kContainers[2]);
     }
     return;
   }
   const std::string extension = lower_extension(path);
   const std::string begin = first_bytes(path);
+  const bool is_there = fs::is_regular_file(path, ignored);
   for (const Container& container : kContainers) {
     const bool is_such = !container.first_bytes.empty() && begin.rfind(container.first_bytes, 0) == 0;
-    if (is_such || (extension == container.extension && !begin.empty())) {
+    if (is_such || (extension == container.extension && is_there)) {
       refuse(path, container);
     }
   }

@@ -60,8 +60,9 @@ FrameTable::Images FrameTable::images_of(const RigFile& rig_file, std::size_t ca
     fail(name, ": camera '", rig_file.rig.cameras[camera].id, "': '", pattern, "' has ", kTimeConversion,
          " in the name of a folder, must have it in the file's name");
   }
-  FolderImages found =
-      images_of_folder(folder / place, form.substr(0, at), form.substr(at + kTimeConversion.size()), !is_folder);
+  const fs::path where = folder / place;  // empty: both are the folder that the program runs in
+  FolderImages found = images_of_folder(where.empty() ? fs::path(".") : where, form.substr(0, at),
+                                        form.substr(at + kTimeConversion.size()), !is_folder);
   images.time_s = std::move(found.time_s);
   images.number = std::move(found.number);
   for (const std::string& file : found.file) {

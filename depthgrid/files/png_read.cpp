@@ -107,6 +107,18 @@ std::string colour_name(int type) {
   }
 }
 
+/// Whether the signature follows the 12 bytes of a header: the data of a ROS message, written to a file as they came.
+/// `signature`: the file's first bytes, read already.
+bool is_compressed_depth(std::FILE* stream, std::string_view signature) {
+  constexpr std::size_t kHeaderBytes = 12;
+  std::array<char, kHeaderBytes> rest{};
+  const std::size_t count = std::fread(rest.data(), 1, rest.size(), stream);
+  std::string begin(signature);
+  begin.append(rest.data(), count);
+  return begin.size() == kHeaderBytes + kSignatureBytes &&
+         png_sig_cmp(reinterpret_cast<png_const_bytep>(begin.data()) + kHeaderBytes, 0, kSignatureBytes) == 0;
+}
+
 void open(Reader& reader, const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
@@ -125,6 +137,12 @@ void open(Reader& reader, const std::filesystem::path& file) {
     const std::string_view kind = image_kind_of_bytes({reinterpret_cast<const char*>(signature.data()), count});
     if (!kind.empty()) {
       fail(file.string(), ": is no PNG file but ", kind, ", ", way_to_png(kind));
+    }
+    if (is_compressed_depth(reader.stream.get(), {reinterpret_cast<const char*>(signature.data()), count})) {
+      fail(file.string(),
+           ": is no PNG file but the data of a ROS compressedDepth message: of a 16UC1 one take away the first 12 "
+           "bytes, "
+           "what follows is the PNG; a 32FC1 one holds inverse depths, have image_transport republish it as raw");
     }
     fail(file.string(), ": is no PNG file: its first bytes are not PNG's signature");
   }

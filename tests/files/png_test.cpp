@@ -223,6 +223,9 @@ const Broken kBroken[] = {
     {"LfsPointer",
      [](const TemporaryFolder& f) { read_bytes_as_png(f, "version https://git-lfs.github.com/spec/v1\n"); },
      "a.png: is no PNG file but text, probably a Git LFS pointer: run `git lfs pull` in its repository"},
+    {"CompressedDepth", [](const TemporaryFolder& f) { read_bytes_as_png(f, std::string(12, '\0') + valid_png(f)); },
+     "a.png: is no PNG file but the data of a ROS compressedDepth message: of a 16UC1 one take away the first 12 "
+     "bytes, what follows is the PNG; a 32FC1 one holds inverse depths, have image_transport republish it as raw"},
     {"OtherSizeThanTheCamera",
      [](const TemporaryFolder& f) {
        Gray16Image image;

@@ -175,6 +175,21 @@ void write_stamped_wall(const TemporaryFolder& folder, const std::string& frames
   (void)folder.write("right.txt", "7.01 right_005.png\n7.18 right_006.png\n");
 }
 
+/// Neither the rig file's name nor the images' names a folder.
+TEST(Stamped, ImagesMayStandBesideTheRigFile) {
+  const TemporaryFolder folder;
+  files::write_png_gray16(folder / "1305031102.160407.png", 64, 48,
+                          std::vector<std::uint16_t>(std::size_t{64} * 48, std::uint16_t{3000}));
+  (void)folder.write("rig.json", R"({"depth": {"metres_per_unit": 0.001}, "cameras": [{"id": "c", "width": 64,
+      "height": 48, "fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5, "depth_files": "%f.png",
+      "T_world_cam": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]})");
+  for (const std::string recording : {"rig.json", "."}) {
+    const auto result = run_command("info " + recording, folder);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("1 frame"));
+  }
+}
+
 TEST(Stamped, TheSearchKnowsHowOldEachImageIs) {
   const TemporaryFolder folder;
   write_stamped_wall(folder, R"("tolerance_s": 0.03, "shared_clock": true)");
