@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <numbers>
 #include <system_error>
+#include <variant>
 
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/core/number_parsing.hpp"
 #include "program/usage_error.hpp"
 
@@ -16,6 +18,16 @@ namespace {
 
 /// A position that is a little beyond a limit comes from rounding.
 constexpr double kLimitRounding = 1e-6;
+
+void add_meshes(const std::string& file, const robot::UrdfOptions& options, std::vector<NamedFile>& inputs) {
+  for (const robot::LinkDescription& link : robot::load_urdf(file, options).links) {
+    for (const robot::LinkShape& item : link.shapes) {
+      if (const auto* mesh = std::get_if<robot::MeshShape>(&item.shape)) {
+        inputs.push_back({"the mesh", mesh->file});
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -49,6 +61,20 @@ robot::UrdfOptions urdf_options(const RobotFileOptions& options) {
   }
   result.shapes = options.shapes == "visual" ? robot::ShapeKind::visual : robot::ShapeKind::collision;
   return result;
+}
+
+std::vector<NamedFile> robot_inputs(const RobotFileOptions& options) {
+  std::vector<NamedFile> inputs{{"the robot's URDF file", options.file}};
+  robot::UrdfOptions urdf = urdf_options(options);
+  urdf.require_meshes = false;
+  add_meshes(options.file, urdf, inputs);
+  urdf.shapes = urdf.shapes == robot::ShapeKind::visual ? robot::ShapeKind::collision : robot::ShapeKind::visual;
+  try {
+    add_meshes(options.file, urdf, inputs);
+  } catch (const Error&) {
+    // What is wrong with shapes that do not count is no reason to refuse the robot.
+  }
+  return inputs;
 }
 
 void check_limits(const robot::Joint& joint, double position, const std::string& option) {

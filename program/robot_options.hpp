@@ -8,6 +8,7 @@
 
 #include "depthgrid/robot/robot_model.hpp"
 #include "depthgrid/robot/urdf.hpp"
+#include "program/output_check.hpp"
 
 namespace depthgrid::program {
 
@@ -22,6 +23,9 @@ void add_robot_file_options(CLI::App& command, RobotFileOptions& options, const 
 
 /// For load_urdf(). Throws UsageError where --package is not NAME=FOLDER, and Error where the folder is not there.
 [[nodiscard]] robot::UrdfOptions urdf_options(const RobotFileOptions& options);
+
+/// The URDF and the meshes of its shapes, of both kinds. Throws as load_urdf() and urdf_options() do.
+[[nodiscard]] std::vector<NamedFile> robot_inputs(const RobotFileOptions& options);
 
 /// "NAME=VALUE" as a joint and its position. Throws UsageError that begins with `option`.
 struct NamedPosition {

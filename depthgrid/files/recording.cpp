@@ -133,6 +133,8 @@ void Recording::check_place(int index, std::size_t camera) const {
   }
 }
 
+double Recording::start_s() const { return table_->by_time() ? table_->time_s(0, 0).value_or(0) : 0.0; }
+
 std::optional<double> Recording::time_s(int index) const {
   check_place(index, 0);
   const auto time_s = table_->time_s(index, 0);

@@ -62,6 +62,8 @@ class Recording {
   [[nodiscard]] std::optional<double> rate_hz() const noexcept { return file_.rate_hz; }
   /// Since the first frame, from the time stamps or the rate; none when the recording says neither.
   [[nodiscard]] std::optional<double> time_s(int index) const;
+  /// The time stamp of the first frame, on the clock of the images; 0 where they have none.
+  [[nodiscard]] double start_s() const;
   /// Whether images have time stamps of their own.
   [[nodiscard]] bool has_time_stamps() const noexcept;
   /// Whether all time stamps are of one clock; none: the rig file does not say.

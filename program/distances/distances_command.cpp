@@ -44,13 +44,23 @@ void say(const std::vector<std::string>& lines) {
   }
 }
 
-/// Hands a frame's images over. A camera that moves goes where it was then; one without an image has seen nothing.
-void update_evaluator(DistancesPlan& plan, int index, std::span<const Frame> frames) {
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    const bool has_moved = plan.recording.moves(k) && plan.recording.has_image(index, k);
-    if (has_moved) {
+bool has_moved_to(const DistancesPlan& plan, int index, std::size_t camera) {
+  return plan.recording.moves(camera) && plan.recording.has_image(index, camera);
+}
+
+/// A camera that moves goes where it was when it took its image of the frame.
+void move_cameras(DistancesPlan& plan, int index) {
+  for (std::size_t k = 0; k < plan.rig.cameras.size(); ++k) {
+    if (has_moved_to(plan, index, k)) {
       plan.rig.cameras[k].T_world_camera = plan.T_world_recording * plan.recording.T_world_camera(index, k);
     }
+  }
+}
+
+/// Hands a frame's images over. A camera without an image has seen nothing.
+void update_evaluator(DistancesPlan& plan, int index, std::span<const Frame> frames) {
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const bool has_moved = has_moved_to(plan, index, k);
     const Pose& T_world_camera = plan.rig.cameras[k].T_world_camera;
     const FrameUpdate update =
         has_moved ? plan.evaluator->update(k, frames[k], T_world_camera) : plan.evaluator->update(k, frames[k]);
@@ -137,8 +147,9 @@ void run(const DistancesOptions& options) {
     const int number = plan.recording.frame_number(index);
     auto points_now = plan.points.at(number);
     std::span<const Frame> frames = plan.recording.read(index);
+    move_cameras(plan, index);
     if (plan.robot) {
-      frames = plan.robot->frames(number, frames);
+      frames = plan.robot->frames(number, frames, plan.rig);
     }
     update_evaluator(plan, index, frames);
     const std::optional<double> time_s = plan.recording.time_s(index);

@@ -224,13 +224,10 @@ std::unique_ptr<RecordedRobot> recorded_robot(const DistancesOptions& options, c
       rig.cameras[k].margins.reset();
     }
   }
-  if (recording.moves() || recording.has_time_stamps()) {
-    fail_usage(
-        "--urdf: the robot is taken out of images of cameras that stand still and whose images are numbered; this "
-        "recording has ",
-        recording.moves() ? "a camera that moves" : "time stamps");
-  }
-  return std::make_unique<RecordedRobot>(options.robot, rig, T_world_rig, recording.rate_hz().has_value());
+  const bool stamped = recording.has_time_stamps();
+  return std::make_unique<RecordedRobot>(
+      options.robot, rig, T_world_rig,
+      ImageTimes{.known = stamped || recording.rate_hz(), .stamped = stamped, .start_s = recording.start_s()});
 }
 
 std::vector<NamedFile> outputs_of(const DistancesOptions& options, const files::Recording& recording,
@@ -249,7 +246,10 @@ std::vector<NamedFile> inputs_of(const DistancesOptions& options, const files::R
   std::vector<NamedFile> inputs = recording_inputs(recording, indices);
   inputs.push_back({"the file of control points", options.points.file});
   inputs.push_back({"the map file", options.map_file});
-  inputs.push_back({"the robot's URDF file", options.robot.robot.file});
+  if (options.robot.has_robot()) {
+    const std::vector<NamedFile> robot = robot_inputs(options.robot.robot);
+    inputs.insert(inputs.end(), robot.begin(), robot.end());
+  }
   inputs.push_back({"the file of joint positions", options.robot.joints_file});
   return inputs;
 }

@@ -84,9 +84,10 @@ const char* why_unknown(robot::JointAnswer answer) {
 }  // namespace
 
 RecordedRobot::RecordedRobot(const RecordedRobotOptions& options, const Rig& rig, const Pose& T_world_rig,
-                             bool times_known)
+                             const ImageTimes& times)
     : rig_(rig),
       robot_(placed_robot(options, T_world_rig)),
+      start_s_(times.start_s),
       padding_m_(checked(options.padding_m, 0, "--robot-padding", kPadding_m)),
       joints_(recorded_joints(options, robot_.model)),
       T_world_link_(robot_.model.links().size(), Pose::Identity()),
@@ -96,7 +97,12 @@ RecordedRobot::RecordedRobot(const RecordedRobotOptions& options, const Rig& rig
       counts_(rig.cameras.size()),
       deepest_m_(rig.cameras.size(), 0.0) {
   const bool by_frame = !joints_.frames.empty();
-  if (!by_frame && !times_known) {
+  if (by_frame && times.stamped) {
+    fail(options.joints_file,
+         ": gives joint positions by frame number, but the images have time stamps, each its own: give their times in "
+         "a column 'time', on the images' clock");
+  }
+  if (!by_frame && !times.known) {
     fail(options.joints_file,
          ": gives joint positions over time, but the recording says no times of its images (\"rate_hz\" in its rig "
          "file): add a column 'frame' with their numbers");
@@ -117,26 +123,30 @@ RecordedRobot::RecordedRobot(const RecordedRobotOptions& options, const Rig& rig
   }
 }
 
-std::span<const Frame> RecordedRobot::frames(int frame_number, std::span<const Frame> seen) {
+std::span<const Frame> RecordedRobot::frames(int frame_number, std::span<const Frame> seen, const Rig& rig) {
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    const auto time_s = joints_.time_of(frame_number, seen[k].time_s);
+    const auto time_s = joints_.time_of(frame_number, start_s_ + seen[k].time_s);
     if (!time_s) {
       fail(joints_.file, ": has no row of frame ", frame_number, "; leave it out with --frames");
     }
     at_joint_times_[k] = {seen[k].depth, {}, *time_s};
-  }
-  const auto padded = padded_->frames(at_joint_times_);
-  const auto bare = bare_->frames(at_joint_times_);
-  for (std::size_t k = 0; k < seen.size(); ++k) {
+    frames_[k] = seen[k];
+    if (seen[k].depth.data == nullptr) {
+      pixels_[k].assign(measured_m_[k].index(0, measured_m_[k].height_px()), RobotPixel::none);
+      continue;
+    }
+    const Pose& T_world_camera = rig.cameras[k].T_world_camera;
+    const Frame padded = padded_->frame(k, at_joint_times_[k], T_world_camera);
+    const Frame bare = bare_->frame(k, at_joint_times_[k], T_world_camera);
     const robot::JointsAtTime& joints = padded_->report()[k].joints;
     if (!joints.known()) {
       fail(joints_.file, ": frame ", frame_number, ", camera '", rig_.cameras[k].id, "', at ",
-           at_joint_times_[k].time_s, " s: its joint positions are not known, ", why_unknown(joints.answer),
-           "; rows go from ", joints_.first_s, " to ", joints_.last_s,
-           " s: leave it out with --frames, or state --joint-time-offset");
+           report::micro_text(at_joint_times_[k].time_s), " s: its joint positions are not known, ",
+           why_unknown(joints.answer), "; rows go from ", report::micro_text(joints_.first_s), " to ",
+           report::micro_text(joints_.last_s), " s: leave it out with --frames, or state --joint-time-offset");
     }
-    frames_[k] = {padded[k].depth, padded[k].robot, seen[k].time_s};
-    count(k, frames_[k], bare[k].robot);
+    frames_[k] = {padded.depth, padded.robot, seen[k].time_s};
+    count(k, frames_[k], bare.robot);
   }
   std::vector<double> q(robot_.model.joints().size());
   (void)joints_.history->at(at_joint_times_.front().time_s, q);

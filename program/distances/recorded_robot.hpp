@@ -17,16 +17,24 @@
 
 namespace depthgrid::program {
 
+/// What a recording says of the times of its images.
+struct ImageTimes {
+  bool known = false;    ///< not only numbers
+  bool stamped = false;  ///< each image has a time of its own
+  double start_s = 0;    ///< of the first frame, on the clock of the joints: its stamp; 0 where there are none
+};
+
 class RecordedRobot {
  public:
   /// `rig`: as the evaluator knows it, with the margins that it takes. `T_world_rig`: from the rig file's world, in
-  /// which --base is stated, to that one. `times_known`: whether frames have times, not only numbers. Throws UsageError
-  /// where options do not fit together, Error where a file is broken.
-  RecordedRobot(const RecordedRobotOptions& options, const Rig& rig, const Pose& T_world_rig, bool times_known);
+  /// which --base is stated, to that one. Throws UsageError where options do not fit together, Error where a file is
+  /// broken.
+  RecordedRobot(const RecordedRobotOptions& options, const Rig& rig, const Pose& T_world_rig, const ImageTimes& times);
 
-  /// The frames with the robot in them, good until the next call. Counts its pixels. Throws Error where the joint
-  /// positions of a frame are not known: its links then stand nowhere.
-  std::span<const Frame> frames(int frame_number, std::span<const Frame> seen);
+  /// The frames with the robot in them, good until the next call. Counts its pixels. `rig`: where the cameras were in
+  /// this frame. A camera without an image has none. Throws Error where the joint positions of a frame are not known:
+  /// its links then stand nowhere.
+  std::span<const Frame> frames(int frame_number, std::span<const Frame> seen, const Rig& rig);
 
   /// The capsules of the links that move, where they are in the last frames (at the first camera's time), world frame;
   /// each is called as its link. Throws Error where there are none.
@@ -46,6 +54,7 @@ class RecordedRobot {
 
   Rig rig_;
   robot::PlacedRobot robot_;
+  double start_s_;
   double padding_m_;
   RecordedJoints joints_;
   std::unique_ptr<robot::FrameIntake> padded_;

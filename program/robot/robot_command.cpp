@@ -27,8 +27,8 @@ struct RobotOptions {
 };
 
 void run_robot(const RobotOptions& options) {
-  refuse_overwriting({{"--output", options.picture}}, {{"the robot's URDF file", options.robot.file}});
   if (!options.picture.empty()) {
+    refuse_overwriting({{"--output", options.picture}}, robot_inputs(options.robot));
     check_output_file(options.picture);
   }
   const RobotSurvey survey = survey_robot(options.robot, options.tip);

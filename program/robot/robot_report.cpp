@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 
+#include "depthgrid/core/printable_text.hpp"
 #include "report/number_text.hpp"
 
 namespace depthgrid::program {
@@ -282,6 +283,17 @@ Pose tip_pose(const RobotSurvey& survey, const std::vector<double>& q) {
   return poses[*survey.tip];
 }
 
+/// Names of files and folders come from outside.
+std::string printable_lines(const std::string& text) {
+  std::string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    result += printable(std::string_view(text).substr(begin, end - begin)) + '\n';
+    begin = end + 1;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string missing_meshes_text(const RobotSurvey& survey) {
@@ -315,7 +327,7 @@ std::string robot_text(const RobotSurvey& survey, const std::vector<double>& q) 
     text += "tip " + model.links()[*survey.tip].name + " at these joint positions: " + report::fixed(p.x(), 4) + ", " +
             report::fixed(p.y(), 4) + ", " + report::fixed(p.z(), 4) + " m from the root\n\n";
   }
-  return text + missing_text(survey);
+  return printable_lines(text + missing_text(survey));
 }
 
 std::string robot_json(const RobotSurvey& survey, const std::vector<double>& q) {

@@ -192,6 +192,40 @@ TEST(RobotCommand, ItsPictureDoesNotReplaceTheRobot) {
   EXPECT_EQ(read_bytes(folder / "r.urdf"), before);
 }
 
+TEST(RobotCommand, FileNamesDoNotSteerTheTerminal) {
+  const TemporaryFolder folder;
+  write_robot(folder);
+  std::filesystem::rename(folder / "r.urdf", folder / "\x1b[31m.urdf");
+  const auto result = run_command("robot \"$(printf '\\033[31m').urdf\"", folder);
+  EXPECT_THAT(result.out, StartsWith("\\x1b[31m.urdf: loads"));
+  EXPECT_THAT(result.out, Not(HasSubstr("\x1b")));
+}
+
+/// A mesh is read, too, whether its shape counts or not.
+TEST(RobotCommand, ItsPictureReplacesNoMesh) {
+  const TemporaryFolder folder;
+  const std::string mesh =
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 0.1 0.1\n"
+      "endloop\nendfacet\nendsolid a\n";
+  (void)folder.write("meshes/a.stl", mesh);
+  (void)folder.write("meshes/seen.stl", mesh);
+  const auto shape = [](const std::string& kind, const std::string& file) {
+    return "<" + kind + "><geometry><mesh filename=\"meshes/" + file + "\"/></geometry></" + kind + ">";
+  };
+  (void)folder.write("m.urdf", "<robot name=\"m\"><link name=\"a\">" + shape("collision", "a.stl") +
+                                   shape("visual", "seen.stl") + "</link></robot>");
+  for (const std::string file : {"meshes/a.stl", "meshes/seen.stl", "link.png"}) {
+    if (file == "link.png") {
+      std::filesystem::create_symlink("meshes/a.stl", folder / "link.png");
+    }
+    const auto result = run_command("robot m.urdf --output " + file, folder);
+    EXPECT_EQ(result.exit_code, 2) << file;
+    EXPECT_THAT(result.err, HasSubstr("--output " + file + " is the mesh ")) << file;
+    EXPECT_EQ(read_bytes(folder / file), mesh);
+  }
+  EXPECT_EQ(run_command("robot m.urdf --output new.png", folder).exit_code, 0);
+}
+
 /// The robots of the data folder, where they are there.
 TEST(RobotCommand, LoadsRealRobots) {
   const char* given = std::getenv("DEPTHGRID_DATA");
