@@ -2,8 +2,10 @@
 // budget. Writes a Markdown table to standard output; docs/worst-cases.md is what it printed.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "depthgrid/search/search.hpp"
 #include "lab/commands.hpp"
 #include "lab/measure/clocks.hpp"
+#include "lab/micro/hard_images.hpp"
 #include "lab/workload/workload.hpp"
 #include "report/machine.hpp"
 
@@ -19,6 +22,9 @@ namespace {
 
 constexpr int kRepetitions = 5;
 constexpr std::size_t kPixels = 640UL * 480UL;
+
+/// The slowest that `worst-cases --hunt` found in ten minutes each.
+constexpr std::array<const char*, 0> kFoundScenes{};
 
 struct HardScene {
   std::string name;
@@ -58,17 +64,19 @@ Case run(const views::ViewStore& store, const std::vector<Capsule>& points, cons
   return result;
 }
 
-views::Settings settings_for(int cameras, double pose_error_m) {
-  views::Settings settings;
-  settings.space = views::BoxSpace{{-1.5, -1.5, 0.0}, {1.5, 1.5, 2.0}};
-  settings.policies = {views::Policy::obstacle, views::Policy::ignored, views::Policy::obstacle, 0};
-  settings.margins.resize(static_cast<std::size_t>(cameras));
-  for (auto& margins : settings.margins) {
-    margins.translation_m = pose_error_m;
-    margins.smallest_obstacle_m = 0;
-  }
-  settings.v_max_m_s = 0;
-  return settings;
+void write_row(const std::string& scene, bool at_camera, double pose_error_m, const HardImages& hard) {
+  const auto store = stored(hard);
+  const std::vector<Capsule> on_camera(9, Capsule::point(hard.rig.cameras[0].T_world_camera.translation()));
+  const std::vector<Capsule> points = at_camera ? on_camera : nine_on_arm();
+  const Case whole = run(*store, points, {});
+  search::Budget tight;
+  tight.nodes = 2000;
+  const Case cut = run(*store, points, tight);
+  std::printf("| %s | %s | %zu | %.1f cm | %lld | %.2f | %.2f | %.2f | %d of 9 | %.3f of %.3f m |\n", scene.c_str(),
+              at_camera ? "on a camera" : "on the arm", hard.images.size(), 100 * pose_error_m,
+              static_cast<long long>(whole.cubes), whole.first_ms, whole.later_ms, cut.first_ms, cut.unfinished,
+              cut.mean_m, whole.mean_m);
+  std::fflush(stdout);
 }
 
 void write_table() {
@@ -92,50 +100,29 @@ void write_table() {
       "mean D, of that bound |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
   for (const int cameras : {2, 8}) {
-    const Rig rig = workload_rig(cameras);
-    std::vector<Capsule> on_arm;
-    for (const Eigen::Vector3d& p : workload_points(0)) {
-      on_arm.push_back(Capsule::point(p));
-    }
-    std::vector<Capsule> on_camera(9, Capsule::point(rig.cameras[0].T_world_camera.translation()));
+    HardImages hard{workload_rig(cameras), {}, {}};
     for (const HardScene& scene : scenes) {
       std::mt19937 generator(7);
-      std::vector<std::vector<std::uint16_t>> images(static_cast<std::size_t>(cameras));
+      hard.images.assign(static_cast<std::size_t>(cameras), std::vector<std::uint16_t>(kPixels));
+      for (int k = 0; k < cameras; ++k) {
+        auto& image = hard.images[static_cast<std::size_t>(k)];
+        for (std::size_t i = 0; i < kPixels; ++i) {
+          image[i] = scene.depth_mm(generator, k, static_cast<int>(i % 640), static_cast<int>(i / 640));
+        }
+      }
       for (const double pose_error_m : {0.0, 0.02}) {
-        views::Settings settings = settings_for(cameras, pose_error_m);
-        for (const bool at_camera : {false, true}) {
-          if (at_camera && scene.name != scenes.back().name) {
-            continue;  // in the blind zone all scenes are the same
-          }
-          if (at_camera) {
-            settings.space = views::BoxSpace{{-4, -4, -1}, {4, 4, 4}};
-          }
-          views::ViewStore store(rig, settings);
-          for (int k = 0; k < cameras; ++k) {
-            auto& image = images[static_cast<std::size_t>(k)];
-            if (image.empty()) {
-              image.resize(kPixels);
-              for (std::size_t i = 0; i < kPixels; ++i) {
-                image[i] = scene.depth_mm(generator, k, static_cast<int>(i % 640), static_cast<int>(i / 640));
-              }
-            }
-            Frame frame;
-            frame.depth = depth_view(std::span<const std::uint16_t>(image), 640, 480, 0.001);
-            static_cast<void>(store.update(static_cast<std::size_t>(k), frame));
-          }
-          const auto& points = at_camera ? on_camera : on_arm;
-          const Case whole = run(store, points, {});
-          search::Budget tight;
-          tight.nodes = 2000;
-          const Case cut = run(store, points, tight);
-          std::printf("| %s | %s | %d | %.0f cm | %lld | %.2f | %.2f | %.2f | %d of 9 | %.3f of %.3f m |\n",
-                      scene.name.c_str(), at_camera ? "on a camera" : "on the arm", cameras, 100 * pose_error_m,
-                      static_cast<long long>(whole.cubes), whole.first_ms, whole.later_ms, cut.first_ms, cut.unfinished,
-                      cut.mean_m, whole.mean_m);
-          std::fflush(stdout);
+        hard.settings = hard_settings(cameras, pose_error_m);
+        write_row(scene.name, false, pose_error_m, hard);
+        if (scene.name == scenes.back().name) {  // in the blind zone all scenes are the same
+          hard.settings.space = views::BoxSpace{{-4, -4, -1}, {4, 4, 4}};
+          write_row(scene.name, true, pose_error_m, hard);
         }
       }
     }
+  }
+  for (const char* const found : kFoundScenes) {
+    const SlowScene scene = scene_from_text(found);
+    write_row("found by `--hunt`, seed " + std::to_string(scene.seed), false, scene.pose_error_m, hard_images(scene));
   }
   std::printf("\nOn: %s\n", report::machine_line().c_str());
 }
@@ -143,8 +130,20 @@ void write_table() {
 }  // namespace
 
 void add_worst_cases_command(CLI::App& app) {
-  app.add_subcommand("worst-cases", "the search where it is slowest, the table of docs/worst-cases.md: some seconds")
-      ->callback([] { write_table(); });
+  struct Options {
+    double hunt_s = 0;
+    std::uint64_t seed = 1;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "worst-cases", "the search where it is slowest, the table of docs/worst-cases.md: some seconds");
+  command
+      ->add_option("--hunt", options->hunt_s,
+                   "instead, look so many seconds for slow scenes by mutation; print the slowest")
+      ->check(CLI::Range(1.0, 36000.0));
+  command->add_option("--seed", options->seed, "of the mutations");
+  command->callback(
+      [options] { options->hunt_s > 0 ? hunt_slow_scenes(options->hunt_s, options->seed) : write_table(); });
 }
 
 }  // namespace depthgrid::lab
