@@ -34,6 +34,11 @@ void SearchPeer::prepare(std::span<const Frame> frames, const Region& /*region*/
   snapshot_ = store_.snapshot();
 }
 
+void SearchPeer::renew(std::size_t camera, const Frame& frame) {
+  (void)store_.update(camera, frame);
+  snapshot_ = store_.snapshot();
+}
+
 void SearchPeer::query(std::span<const Eigen::Vector3d> points_world, std::span<double> distances_m) {
   primitives_.resize(points_world.size());
   answers_.resize(points_world.size());

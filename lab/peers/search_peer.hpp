@@ -18,6 +18,9 @@ class SearchPeer : public Peer {
   void prepare(std::span<const Frame> frames, const Region& region) override;
   void query(std::span<const Eigen::Vector3d> points_world, std::span<double> distances_m) override;
 
+  /// One camera's image and a snapshot with it.
+  void renew(std::size_t camera, const Frame& frame);
+
   [[nodiscard]] views::ViewStore& store() { return store_; }
   [[nodiscard]] const views::Snapshot& snapshot() const { return snapshot_; }
   [[nodiscard]] search::Search& search() { return search_; }

@@ -30,7 +30,23 @@ struct Goal {
   [[nodiscard]] bool missed() const;
 };
 
+/// Those set for the first search, which remembered nothing from call to call.
 [[nodiscard]] std::vector<Goal> goals(const Report& report);
+
+/// One line of the table of goals with an aim beyond each.
+struct AimedGoal {
+  std::string what;
+  const char* workload = "";  ///< key
+  const char* unit = "";
+  double goal = 0;
+  double aim = 0;  ///< beyond the goal: where it is less, values are to be at most these, else at least
+  double value = 0;
+
+  [[nodiscard]] bool reached(double bound) const { return aim < goal ? value <= bound : value >= bound; }
+};
+
+/// Those set for the search that keeps its verdicts for a snapshot; two cameras.
+[[nodiscard]] std::vector<AimedGoal> goals_with_verdicts(const Report& report);
 
 /// One line about the first ratio or bound that even a quick run on a shared machine must keep; empty when all hold.
 /// Far more generous than the goals, and never an absolute time.

@@ -50,6 +50,22 @@ void measure_images(Stage& stage, SearchPeer& ours, const std::string& group, Re
   report.records.push_back(std::move(cycle));
 }
 
+/// Unsynchronised cameras: their images come in turns, and each call has a snapshot of its own.
+void measure_new_snapshots(Stage& stage, SearchPeer& ours, const std::string& group, Report& report) {
+  ours.prepare(stage.frames(0), stage.arm_region());
+  Calls calls;
+  for (int set = 1; set < stage.frame_sets(); ++set) {
+    for (int camera = 0; camera < stage.cameras(); ++camera) {
+      const auto k = static_cast<std::size_t>(camera);
+      ours.renew(k, stage.frames(set)[k]);
+      const double time_s = time_between_s(set, camera * kSubSteps / stage.cameras());
+      calls.ask(ours, as_points(random_workload_points(time_s, kWorkloadControlPoints, seed_of(set, camera))), false,
+                true);
+    }
+  }
+  report.records.push_back(calls.record(group, "nine points, a new snapshot for every call", stage.cameras()));
+}
+
 void measure_errors(Stage& stage, SearchPeer& ours, const std::string& group, const OurMargins& margins, int sets,
                     Report& report) {
   Samples over_m;
@@ -97,6 +113,7 @@ void measure_ours(Stage& stage, const std::string& workload, const OurMargins& m
   };
   measure_images(stage, ours, group, report);
   measure("nine points", plan.repetitions, false, random_points(kWorkloadControlPoints));
+  measure_new_snapshots(stage, ours, group, report);
   measure("nine points, hybrid", plan.repetitions / 4, true, random_points(kWorkloadControlPoints));
   measure("100 points", plan.repetitions / 10, false, random_points(100));
   measure("seven link capsules", plan.repetitions / 2, false,

@@ -30,6 +30,9 @@ void measure_ours(Stage& stage, const std::string& workload, const OurMargins& m
 /// Ours and `letter` in turns on the same points, as rows of group "beside the letter, <workload>".
 void measure_beside_letter(Stage& stage, const std::string& workload, const OurPlan& plan, Report& report);
 
+/// The bounds of calls whose budget of nodes ends beside the whole answers, as rows of group "budget, <workload>".
+void measure_budget_bounds(Stage& stage, const std::string& workload, const OurMargins& margins, Report& report);
+
 /// Frames that no scene gives, with and without a budget, as rows of group "adversarial": every pixel at random,
 /// nothing measured at all, and points at the cameras.
 void measure_adversarial(Stage& stage, const OurPlan& plan, Report& report);

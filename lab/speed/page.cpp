@@ -104,7 +104,7 @@ void write_goals_between(const std::filesystem::path& page, const Report& report
   if (!std::filesystem::exists(page)) {
     files::write_text_file(page, std::string(kBegin) + "\n" + kEnd + "\n");
   }
-  report::write_between(page, kBegin, kEnd, goals_text(goals(report)));
+  report::write_between(page, kBegin, kEnd, goals_text(goals(report)) + goals_text(goals_with_verdicts(report)));
 }
 
 }  // namespace

@@ -64,6 +64,29 @@ std::string goals_text(const std::vector<Goal>& all) {
   return text.str();
 }
 
+std::string goals_text(const std::vector<AimedGoal>& all) {
+  report::MarkdownTable table({"goal", "workload", "at most or at least", "aim", "measured", "reached"});
+  for (const AimedGoal& goal : all) {
+    const std::string bound =
+        (goal.aim < goal.goal ? "<= " : ">= ") + report::three_digits(goal.goal) + ' ' + goal.unit;
+    table.row({goal.what, goal.workload, bound, report::three_digits(goal.aim), report::three_digits(goal.value),
+               std::isnan(goal.value)     ? ""
+               : !goal.reached(goal.goal) ? "**missed**"
+               : !goal.reached(goal.aim)  ? "goal"
+                                          : "aim"});
+  }
+  const auto missed = std::count_if(all.begin(), all.end(), [](const AimedGoal& goal) {
+    return !std::isnan(goal.value) && !goal.reached(goal.goal);
+  });
+  std::ostringstream text;
+  text << "\nSet once verdicts were kept from call to call, with an aim beyond each; two cameras, medians where no "
+          "mean is "
+          "named. "
+       << missed << " of " << all.size() << " are missed.\n\n"
+       << table.text() << "\n";
+  return text.str();
+}
+
 void write_work(std::ostream& page, const Report& report) {
   page
       << "## Where the time goes\n\nWhat one call does, in cubes of the octree that it opens and exact tests of a ball "

@@ -81,6 +81,25 @@ void write_adversarial(std::ostream& page, const Report& report) {
   page << adversarial.text() << "\n\n";
 }
 
+void write_budgets(std::ostream& page, const Report& report) {
+  page << "Nine points with a budget, two cameras: how much of the whole answer the bound is when it ends, in the "
+          "first and the "
+          "15 later calls of each frame set:\n\n";
+  report::MarkdownTable table({"workload", "nodes", "answers stopped", "bound at least 0.7 of the answer",
+                               "all nine of a call", "bound 0, answer not", "ms (median)", "largest"});
+  for (const auto& [workload, title] : kWorkloadNames) {
+    for (const Record* row : report.group(std::string("budget, ") + workload)) {
+      const Record& r = *row;
+      table.row({workload, whole(r["budget_nodes"]), whole(100 * r["stopped_share"]) + " %",
+                 report::three_digits(100 * r["large_share"]) + " %",
+                 report::three_digits(100 * r["large_calls_share"]) + " %",
+                 report::three_digits(100 * r["zero_share"]) + " %", milliseconds(r["call_median_s"]),
+                 milliseconds(r["call_max_s"])});
+    }
+  }
+  page << table.text() << "\n\n";
+}
+
 }  // namespace
 
 void write_ours(std::ostream& page, const Report& report) {
@@ -88,6 +107,7 @@ void write_ours(std::ostream& page, const Report& report) {
   write_errors(page, report);
   write_letter(page, report);
   write_adversarial(page, report);
+  write_budgets(page, report);
 }
 
 }  // namespace depthgrid::lab

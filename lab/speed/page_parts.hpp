@@ -12,6 +12,7 @@ namespace depthgrid::lab {
 
 /// For docs/goals.md.
 std::string goals_text(const std::vector<Goal>& all);
+std::string goals_text(const std::vector<AimedGoal>& all);
 /// Where the time goes, as far as counts tell.
 void write_work(std::ostream& page, const Report& report);
 /// The search's own figures.

@@ -114,6 +114,9 @@ Report measure(const Plan& plan) {
     const auto measure_one = [&](Stage& stage, const WorkloadName& name, const OurMargins& margins) {
       step(std::string("ours, ") + name.key + with, per_stage_s);
       measure_ours(stage, name.key, margins, plan.ours, report);
+      if (cameras == 2) {
+        measure_budget_bounds(stage, name.key, margins, report);
+      }
       if (&stage != &noisy) {
         measure_beside_letter(stage, name.key, plan.ours, report);
       }
