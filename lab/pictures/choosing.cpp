@@ -29,7 +29,7 @@ struct Panel {
 
 constexpr double kPanelWidth = 284;
 constexpr double kPanelHeight = 190;
-constexpr int kSamples = 120;
+constexpr int kSamples = 40;
 
 std::string tick_text(double value) {
   std::string text = std::to_string(value);
@@ -96,7 +96,7 @@ Panel speed_panel() {
           2,
           5,
           4,
-          {{"0.25 m/s", curve(0.25)}, {"1 m/s", curve(1)}, {"1.6 m/s", curve(1.6)}, {"2 m/s", curve(2)}}};
+          {{"0.25 m/s", curve(0.25)}, {"1.6 m/s", curve(1.6)}, {"2 m/s", curve(2)}}};
 }
 
 Panel exposure_panel() {
@@ -110,7 +110,7 @@ Panel exposure_panel() {
           40,
           4,
           4,
-          {{"8 ms", curve(0.008)}, {"16.7 ms", curve(1 / 60.0)}, {"33.3 ms", curve(1 / 30.0)}}};
+          {{"8 ms", curve(0.008)}, {"33.3 ms", curve(1 / 30.0)}}};
 }
 
 /// Half a voxel's diagonal, with half of a voxel pending on the average, less half the thinnest hidden thing.
