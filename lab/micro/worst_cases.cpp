@@ -24,7 +24,9 @@ constexpr int kRepetitions = 5;
 constexpr std::size_t kPixels = 640UL * 480UL;
 
 /// The slowest that `worst-cases --hunt` found in ten minutes each.
-constexpr std::array<const char*, 0> kFoundScenes{};
+constexpr std::array<const char*, 1> kFoundScenes{
+    "seed=413 cameras=8.31486 wall_m=6 tilt_m=0 stripe_px=5.12586 stripe_m=5.00463 speck_share=0.00438726 speck_px=1 "
+    "speck_near_m=0.842607 speck_far_m=4.3927 noise_m=0.04147 missing_share=0 pose_error_m=0.0235529"};
 
 struct HardScene {
   std::string name;
@@ -122,7 +124,7 @@ void write_table() {
   }
   for (const char* const found : kFoundScenes) {
     const SlowScene scene = scene_from_text(found);
-    write_row("found by `--hunt`, seed " + std::to_string(scene.seed), false, scene.pose_error_m, hard_images(scene));
+    write_row("found by `--hunt`", false, scene.pose_error_m, hard_images(scene));
   }
   std::printf("\nOn: %s\n", report::machine_line().c_str());
 }
