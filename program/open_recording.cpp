@@ -12,9 +12,9 @@ files::Recording open_recording(const std::string& path, const files::RecordingO
   }
 }
 
-std::vector<NamedFile> recording_inputs(const files::Recording& recording, const std::vector<int>& indices) {
+std::vector<NamedFile> recording_inputs(const files::Recording& recording) {
   std::vector<NamedFile> inputs{{"the rig file", recording.rig_file()}};
-  for (const int index : indices) {
+  for (int index = 0; index < recording.frame_count(); ++index) {
     for (const auto& file : recording.files_of(index)) {
       inputs.push_back({file.extension() == ".png" ? "the depth image" : "the file of times or poses", file});
     }

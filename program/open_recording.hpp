@@ -12,7 +12,7 @@ namespace depthgrid::program {
 /// Throws UsageError where the options do not fit the recording, and Error where the recording is broken.
 files::Recording open_recording(const std::string& path, const files::RecordingOptions& options);
 
-/// The files that working on these frames reads.
-std::vector<NamedFile> recording_inputs(const files::Recording& recording, const std::vector<int>& indices);
+/// The files of the recording, whichever of its frames are chosen: none of them may be lost.
+std::vector<NamedFile> recording_inputs(const files::Recording& recording);
 
 }  // namespace depthgrid::program

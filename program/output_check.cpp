@@ -62,13 +62,16 @@ void refuse_overwriting(const std::vector<NamedFile>& outputs, const std::vector
     if (const auto id = id_of(input.file)) {
       if (const auto found = there.find(*id); found != there.end()) {
         fail_usage(found->second->name, " ", found->second->file.string(), " is ", input.name, " ", input.file.string(),
-                   ", which this command reads and would overwrite; name another file");
+                   ", an input that would be overwritten; name another file");
       }
     }
   }
 }
 
 void check_output_file(const std::string& file) {
+  if (file == "-") {
+    fail_usage("-: this output does not go to standard output; name a file");
+  }
   const fs::path folder = fs::path(file).parent_path();
   if (!folder.empty() && !fs::is_directory(folder)) {
     fail("cannot write ", file, ": there is no folder ", folder.string(), "; create it first");

@@ -17,7 +17,8 @@ struct NamedFile {
 /// out.
 void refuse_overwriting(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
-/// Throws Error unless a file can be made there: a folder that is missing, a folder or device of that name.
+/// Throws Error unless a file can be made there: a folder that is missing, a folder or device of that name; UsageError
+/// for "-".
 void check_output_file(const std::string& file);
 
 }  // namespace depthgrid::program

@@ -241,9 +241,8 @@ std::vector<NamedFile> outputs_of(const DistancesOptions& options, const files::
   return outputs;
 }
 
-std::vector<NamedFile> inputs_of(const DistancesOptions& options, const files::Recording& recording,
-                                 const std::vector<int>& indices) {
-  std::vector<NamedFile> inputs = recording_inputs(recording, indices);
+std::vector<NamedFile> inputs_of(const DistancesOptions& options, const files::Recording& recording) {
+  std::vector<NamedFile> inputs = recording_inputs(recording);
   inputs.push_back({"the file of control points", options.points.file});
   inputs.push_back({"the map file", options.map_file});
   if (options.robot.has_robot()) {
@@ -332,7 +331,7 @@ DistancesPlan plan_distances(const DistancesOptions& options) {
   if (!searches) {
     refuse_shapes(points);
   }
-  refuse_overwriting(outputs_of(options, recording, indices), inputs_of(options, recording, indices));
+  refuse_overwriting(outputs_of(options, recording, indices), inputs_of(options, recording));
   std::vector<std::string> warnings = warnings_of(options, recording.rig());
   warn_of_clocks(recording, warnings);
   warn_of_missing_images(recording, indices, warnings);

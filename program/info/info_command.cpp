@@ -126,7 +126,7 @@ void run(const InfoOptions& options) {
   const std::vector<int> indices = select_frames(options.frames, recording);
 
   refuse_overwriting({{"--output", options.output}, {"--hole-picture", options.hole_picture}},
-                     recording_inputs(recording, indices));
+                     recording_inputs(recording));
 
   OutputFile output(options.output);
   RecordingInfo info;

@@ -10,6 +10,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
 #include "program/robot/shape_surface.hpp"
+#include "program/usage_error.hpp"
 
 namespace depthgrid::program {
 
@@ -141,7 +142,7 @@ RobotSurvey survey_robot(const RobotFileOptions& options, const std::string& tip
                      .other_note = {},
                      .tip = {}};
   if (!tip.empty()) {
-    survey.tip = survey.model.link_index(tip);
+    survey.tip = as_usage([&] { return survey.model.link_index(tip); });
   }
   const std::vector<std::size_t> links = links_asked_for(survey.model, survey.tip);
   survey.joints = joints_above(survey, links);

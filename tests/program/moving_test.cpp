@@ -141,7 +141,7 @@ TEST(Moving, ListsAndTrajectoriesAreInputs) {
     const std::string before = read_bytes(folder / input);
     const auto result = run_command(kSearch + kPoint + "--output " + input, folder);
     EXPECT_EQ(result.exit_code, 2) << input;
-    EXPECT_THAT(result.err, HasSubstr("which this command reads and would overwrite")) << input;
+    EXPECT_THAT(result.err, HasSubstr("an input that would be overwritten")) << input;
     EXPECT_EQ(read_bytes(folder / input), before);
   }
 }

@@ -53,8 +53,7 @@ TEST(Outputs, ThatAreInputsAreRefusedBeforeWorkBegins) {
   };
   for (const Overwriting& c : std::vector<Overwriting>{
            {"distances rig.json " + kPoint + "--output rig.json",
-            "--output rig.json is the rig file rig.json, which this command reads and would overwrite; name another "
-            "file"},
+            "--output rig.json is the rig file rig.json, an input that would be overwritten; name another file"},
            {"distances . " + kPoint + "--output rig.json", "is the rig file ./rig.json"},
            {"distances . " + kPoint + "--output ./x/../rig.json", "is the rig file",
             [](const TemporaryFolder& f) { fs::create_directory(f / "x"); }},
@@ -67,6 +66,8 @@ TEST(Outputs, ThatAreInputsAreRefusedBeforeWorkBegins) {
            {"distances . " + kPoint + "--output other/rig.json", "--output other/rig.json is the rig file",
             [](const TemporaryFolder& f) { fs::create_directory_symlink(".", f / "other"); }},
            {"distances . " + kPoint + "--output right_006.png", "is the depth image ./right_006.png"},
+           {"distances . --frames 5 " + kPoint + "--output right_006.png", "is the depth image ./right_006.png"},
+           {"info . --frames 5 --output left_006.png", "is the depth image ./left_006.png"},
            {"distances . --points p.csv --sensor ideal --output p.csv", "is the file of control points p.csv",
             [](const TemporaryFolder& f) { (void)f.write("p.csv", "hand,0.2,0,1.7\n"); }},
            {"distances . --point 0.2,0,1.7 --method letter --map wall.map --output wall.map",

@@ -154,7 +154,7 @@ TEST(RobotCommand, SaysWhereTheTipStands) {
   EXPECT_EQ(document["joints"].Size(), 2U);
   EXPECT_THAT(run_command("robot r.urdf --tip slide --joints 1.5707963267948966,0.1", folder).out,
               HasSubstr("tip slide at these joint positions: 0.0000, 0.4000, 0.5000 m from the root"));
-  EXPECT_EQ(run_command("robot r.urdf --tip hand", folder).exit_code, 1);
+  EXPECT_EQ(run_command("robot r.urdf --tip hand", folder).exit_code, 2);
 }
 
 TEST(RobotCommand, JointPositionsAreRadiansOfItsJoints) {

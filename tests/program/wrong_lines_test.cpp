@@ -22,6 +22,7 @@ void expect_refused(const std::string& line, int exit_code) {
   (void)folder.write("spheres.csv", "id,x,y,z,radius\nball,0.2,0,1.7,0.1\n");
   (void)folder.write("broken.csv", "hand,1,2\n");
   (void)folder.write("broken.json", "{");
+  (void)folder.write("arm.urdf", R"(<robot name="arm"><link name="foot"/></robot>)");
   const auto before = folder.entries();
   const auto result = run_command(line, folder);
   EXPECT_EQ(result.exit_code, exit_code) << "depthgrid " << line << "\n" << result.err;
@@ -217,6 +218,17 @@ const std::vector<std::string> kOtherLines{
     "demo --method exact",
     "demo --picture",
     "demo --picture ''",
+    "demo --picture -",
+    "map build . --output -",
+    "rig from rig.json --output -",
+    "robot arm.urdf --output -",
+    "robot arm.urdf --tip hand",
+    "robot arm.urdf --joints=1",
+    "robot arm.urdf --package arm",
+    "robot arm.urdf --shapes all",
+    "robot arm.urdf --nonsense --help",
+    "robot",
+    "robot ''",
 };
 
 TEST(WrongLines, OfTheTopLevelEndWith2) {
