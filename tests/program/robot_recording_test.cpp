@@ -165,7 +165,8 @@ TEST(RobotInRecording, ItsPixelsAreTakenAndTheObstaclesStay) {
   options.base = "0.1,0,0.2,0,0,0.5";
   options.padding_m = 0.02;
   files::Recording recording(folder.path());
-  program::RecordedRobot robot(options, recording.rig(), Pose::Identity(), {.known = true});
+  program::RecordedRobot robot(options, recording.rig(), Pose::Identity(),
+                               {.known = true, .stamped = false, .start_s = 0});
   long robots = 0;
   long obstacles = 0;
   for (int index = 0; index < 2; ++index) {
