@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "depthgrid/search/search.hpp"
 #include "lab/recordings/ball_study.hpp"
@@ -30,19 +31,31 @@ Rig on_floor(Rig rig) {
   return rig;
 }
 
-views::Settings settings_of(const MarginSetting& setting, const CameraSet& cameras) {
+}  // namespace
+
+Rig ball_rig(const files::Recording& recording) { return on_floor(with_kinect_range(recording.rig())); }
+
+views::Settings ball_search_settings(std::vector<CameraMargins> margins, double v_max_m_s) {
   const Eigen::AlignedBox3d workspace = ball_workspace_floor();
   // The points lie up to 0.6 m around the ball.
   const Eigen::Vector3d around = Eigen::Vector3d::Constant(0.6);
   views::Settings settings;
   settings.space = views::BoxSpace{workspace.min() - around, workspace.max() + around};
   settings.policies = {views::Policy::ignored, views::Policy::ignored, views::Policy::obstacle, 0};
-  for (const std::size_t k : cameras) {
-    settings.margins.push_back(setting.margins[k]);
-  }
+  settings.margins = std::move(margins);
   settings.rho_m = kRho_m;
-  settings.v_max_m_s = setting.v_max_m_s;
+  settings.v_max_m_s = v_max_m_s;
   return settings;
+}
+
+namespace {
+
+views::Settings settings_of(const MarginSetting& setting, const CameraSet& cameras) {
+  std::vector<CameraMargins> margins;
+  for (const std::size_t k : cameras) {
+    margins.push_back(setting.margins[k]);
+  }
+  return ball_search_settings(std::move(margins), setting.v_max_m_s);
 }
 
 bool covers(const RigCamera& camera, const Eigen::Vector3d& p_world) {
@@ -127,7 +140,7 @@ std::vector<CameraSet> all_sets(std::size_t camera_count) {
 std::vector<BallSearchFigures> study_ball_search(files::Recording& recording, const BallTrack& track,
                                                  const std::vector<int>& frames) {
   const Pose T_floor_world = recording.rig().T_floor_world.value_or(Pose::Identity());
-  const Rig rig = on_floor(with_kinect_range(recording.rig()));
+  const Rig rig = ball_rig(recording);
   const std::size_t n = rig.cameras.size();
   std::vector<BallSearchFigures> rows;
   for (const MarginSetting& setting : ball_margins(rig)) {

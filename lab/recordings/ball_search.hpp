@@ -6,9 +6,15 @@
 #include <vector>
 
 #include "depthgrid/files/recording.hpp"
+#include "depthgrid/search/search.hpp"
 #include "lab/recordings/ball_track.hpp"
 
 namespace depthgrid::lab {
+
+/// The recording's cameras with a Kinect's range; their world is its floor frame.
+[[nodiscard]] Rig ball_rig(const files::Recording& recording);
+/// W is a box around where the ball moves; space that no camera covers is ignored. One margin a camera.
+[[nodiscard]] views::Settings ball_search_settings(std::vector<CameraMargins> margins, double v_max_m_s);
 
 /// All answers of one setting with one number of cameras: every choice of that many.
 struct BallSearchFigures {

@@ -3,6 +3,7 @@
 //   DEPTHGRID_DATA=../shared/data build/release/bin/depthgrid-lab recordings
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "lab/recordings/ball_search.hpp"
 #include "lab/recordings/ball_study.hpp"
 #include "lab/recordings/ball_tables.hpp"
+#include "lab/recordings/ball_time.hpp"
 #include "lab/recordings/kitchen_study.hpp"
 #include "lab/recordings/left_out_study.hpp"
 #include "program/distances/frame_picture.hpp"
@@ -33,6 +35,7 @@ struct RecordingsOptions {
   std::string left_out_picture = "docs/images/leave-one-out.png";
   int left_out_frame = 32;
   int stride = 8;
+  bool times = false;
   std::string output = "docs/recordings.md";
   std::string text = "lab/recordings/recordings.in.md";
 };
@@ -71,6 +74,10 @@ void run(const RecordingsOptions& options) {
   }
   files::Recording recording(folder);
   const auto track = load_ball_track(folder / "ball.json");
+  if (options.times) {
+    std::cout << ball_time_table(recording, track) << "\n\nOn: " << report::machine_line() << '\n';
+    return;
+  }
   std::vector<int> frames = program::select_frames(options.frames, recording.frame_number(0), recording.frame_count());
   for (int& frame : frames) {
     frame -= recording.frame_number(0);
@@ -89,6 +96,7 @@ void run(const RecordingsOptions& options) {
   replace(text, "@BALL_TABLES@", ball_tables(study, recording.rig()));
   replace(text, "@KITCHEN_TABLES@", kitchen_tables());
   replace(text, "@SEARCH_TABLES@", ball_search_tables(study_ball_search(recording, track, frames)));
+  replace(text, "@BALL_TIMES@", ball_time_table(recording, track));
   replace(text, "@STRIDE@", std::to_string(options.stride));
   replace(text, "@LEFT_OUT_TABLES@", left_out_tables(ball_leave_one_out(recording, frames, options.stride)));
   replace(text, "@KITCHEN_LEFT_OUT_TABLES@", left_out_tables(kitchen_leave_one_out(options.stride)));
@@ -118,6 +126,7 @@ void add_recordings_command(CLI::App& app) {
   command->add_option("--output", options->output, "file to write, - for standard output")->capture_default_str();
   command->add_option("--text", options->text, "text with places for the tables, from the repository's root")
       ->capture_default_str();
+  command->add_flag("--times", options->times, "only print how long the search takes on kinect3_ball: some seconds");
   command->callback([options] { run(*options); });
 }
 
