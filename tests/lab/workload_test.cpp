@@ -9,13 +9,12 @@
 
 #include "depthgrid/core/error.hpp"
 #include "lab/workload/workload_noise.hpp"
+#include "support/quantile.hpp"
 
 namespace depthgrid::lab {
 namespace {
 
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
+using test::quantile;
 
 TEST(Workload, ControlPointsAreNearPeopleAndThingsAtAllTimes) {
   std::vector<double> distances_m;

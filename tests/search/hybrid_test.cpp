@@ -10,6 +10,7 @@
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/simulation/scene.hpp"
 #include "search/search_setup.hpp"
+#include "support/quantile.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -18,14 +19,10 @@ using Eigen::Vector3d;
 using reference::Random;
 using reference::RandomProblem;
 using reference::Reference;
+using test::quantile;
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 double angle_between(const Vector3d& a, const Vector3d& b) { return std::acos(std::clamp(a.dot(b), -1.0, 1.0)); }
-
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
 
 /// The weighted mean of the unit vectors from p to the obstacle space within rho, by random points.
 Vector3d mean_direction(const Reference& oracle, const views::Settings& settings, const Vector3d& p_world,
