@@ -1,6 +1,7 @@
 // A call that is stopped early holds a lower bound and says so.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "depthgrid/search/best_first.hpp"
 #include "search/one_camera.hpp"
 #include "search/search_setup.hpp"
+#include "support/ticking_clock.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -79,17 +81,28 @@ TEST(Budget, IsSharedByThePrimitivesOfACall) {
   EXPECT_GT(opened, 0);
 }
 
-// Far apart they hardly share a cube, so that what each opens counts. Asked by one that knows nothing yet: cubes that
-// are known are paid for, but not counted.
-TEST(Budget, IsNotGivenAnewToEveryPrimitive) {
-  OneCamera one(2.0F);
-  one.setup.settings.rho_m = 0.5;
-  one.setup.settings.policies.outside = views::Policy::ignored;
-  Asker asker(one.setup);
+using Ask = void (Search::*)(const views::Snapshot&, std::span<const Capsule>, std::span<Answer>, const Budget&,
+                             Count*) noexcept;
+
+/// Before a wall, and so far apart that they hardly share a cube.
+struct Scattered {
+  OneCamera one{2.0F};
   std::vector<Capsule> primitives;
-  for (int i = 0; i < 16; ++i) {
-    primitives.push_back(Capsule::point({-0.45 + 0.3 * (i % 4), -0.3 + 0.2 * (i / 4), 1.6}));
+
+  Scattered() {
+    one.setup.settings.rho_m = 0.5;
+    one.setup.settings.policies.outside = views::Policy::ignored;
+    for (int i = 0; i < 16; ++i) {
+      primitives.push_back(Capsule::point({-0.45 + 0.3 * (i % 4), -0.3 + 0.2 * (i / 4), 1.6}));
+    }
   }
+};
+
+// Asked by one that knows nothing yet: cubes that are known are paid for, but not counted.
+TEST(Budget, IsNotGivenAnewToEveryPrimitive) {
+  const Scattered scattered;
+  const Asker asker(scattered.one.setup);
+  const std::vector<Capsule>& primitives = scattered.primitives;
   std::vector<Answer> answers(primitives.size());
   const auto opened = [&](auto&& ask, const Budget& budget) {
     Search search;
@@ -97,14 +110,29 @@ TEST(Budget, IsNotGivenAnewToEveryPrimitive) {
     (search.*ask)(asker.snapshot(), primitives, answers, budget, &count);
     return count.nodes;
   };
-  using Ask = void (Search::*)(const views::Snapshot&, std::span<const Capsule>, std::span<Answer>, const Budget&,
-                               Count*) noexcept;
   for (const Ask ask : {Ask(&Search::distances), Ask(&Search::hybrid)}) {
     const std::int64_t all = opened(ask, {});
     for (const std::int64_t nodes : {all / 8, all / 3}) {
       const std::int64_t spent = opened(ask, {.nodes = nodes});
       EXPECT_LE(spent, nodes) << "of " << all;
       EXPECT_GT(spent, nodes / 4) << "of " << all;
+      EXPECT_TRUE(answers.back().nearest.budget);
+    }
+  }
+}
+
+// A millisecond passes whenever the clock is read: once at the beginning, then until the time is over and not again.
+TEST(Budget, OfTimeIsNotGivenAnewToEveryPrimitive) {
+  const Scattered scattered;
+  const Asker asker(scattered.one.setup);
+  std::vector<Answer> answers(scattered.primitives.size());
+  for (const Ask ask : {Ask(&Search::distances), Ask(&Search::hybrid)}) {
+    for (const int ticks : {1, 80, 320}) {
+      Search search;
+      const test::TickingClock clock(std::chrono::milliseconds(1));
+      (search.*ask)(asker.snapshot(), scattered.primitives, answers, {.time_s = 1e-3 * ticks}, nullptr);
+      EXPECT_EQ(clock.reads(), 1 + ticks);
+      EXPECT_EQ(answers.front().nearest.budget, ticks == 1) << "for the first ones there is time";
       EXPECT_TRUE(answers.back().nearest.budget);
     }
   }

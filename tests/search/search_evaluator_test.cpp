@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -14,6 +15,7 @@
 #include "support/allocation_guard.hpp"
 #include "support/random_run.hpp"
 #include "support/thrown_message.hpp"
+#include "support/ticking_clock.hpp"
 
 namespace depthgrid::search {
 namespace {
@@ -205,6 +207,26 @@ TEST(SearchEvaluator, SharesItsBudget) {
       EXPECT_EQ(answers[i].nearest.distance_m, expected[i].nearest.distance_m) << nodes;
       EXPECT_EQ(answers[i].nearest.budget, expected[i].nearest.budget) << nodes;
     }
+  }
+}
+
+// Likewise the time, of which a millisecond passes whenever the clock is read: at the beginning of each part, then
+// until the part's time is over.
+TEST(SearchEvaluator, SharesItsTime) {
+  const Rig rig = rig_of(1);
+  std::vector<Capsule> asked;
+  for (int i = 0; i < 24; ++i) {
+    asked.push_back(Capsule::point({-0.5 + 0.2 * (i % 6), -0.3 + 0.2 * (i / 6), 1.9}));
+  }
+  std::vector<Answer> answers(asked.size());
+  for (const std::size_t directions : {std::size_t{0}, std::size_t{12}, asked.size()}) {
+    SearchEvaluator cell(rig, settings_for(rig), {.directions = directions, .budget = {.time_s = 0.02}});
+    ASSERT_TRUE(cell.update(0, Wall().frame()).taken());
+    const test::TickingClock clock(std::chrono::milliseconds(1));
+    cell.evaluate(asked, 0, answers);
+    const int parts = directions == 0 ? 1 : 2;  // the second may be empty
+    EXPECT_EQ(clock.reads(), parts + 20) << directions;
+    EXPECT_TRUE(answers.back().nearest.budget) << directions;
   }
 }
 
