@@ -13,6 +13,16 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// Every 0.25 s from 99.9 s on, at z = t + `before_m`.
+std::string poses_of_approach(double before_m) {
+  std::string poses = "# timestamp tx ty tz qx qy qz qw\n";
+  for (int k = 0; k < 6; ++k) {
+    const double t = -0.1 + 0.25 * k;
+    poses += std::to_string(100 + t) + " 0 0 " + std::to_string(t + before_m) + " 0 0 0 1\n";
+  }
+  return poses;
+}
+
 /// A camera that goes along z towards a wall at z = 3 m: at time t it stands at z = t and sees the wall 3 - t m away.
 /// Images at 0, 0.5, 1 s of 100 s; poses every 0.25 s from 99.9 s on, so never at an image's time.
 void write_approach(const TemporaryFolder& folder, const std::string& frames) {
@@ -25,13 +35,8 @@ void write_approach(const TemporaryFolder& folder, const std::string& frames) {
         std::vector<std::uint16_t>(std::size_t{64} * 48, static_cast<std::uint16_t>(3000 - 1000 * t)));
     list += std::to_string(100 + t) + " " + name + "\n";
   }
-  std::string poses = "# timestamp tx ty tz qx qy qz qw\n";
-  for (int k = 0; k < 6; ++k) {
-    const double t = -0.1 + 0.25 * k;
-    poses += std::to_string(100 + t) + " 0 0 " + std::to_string(t) + " 0 0 0 1\n";
-  }
   (void)folder.write("depth.txt", list);
-  (void)folder.write("groundtruth.txt", poses);
+  (void)folder.write("groundtruth.txt", poses_of_approach(0));
   (void)folder.write("rig.json",
                      R"({"name": "approach", "depth": {"metres_per_unit": 0.001}, "frames": {)" + frames +
                          R"(}, "cameras": [{"id": "hand", "width": 64, "height": 48, "fx": 60, "fy": 60, "cx": 31.5,
@@ -146,6 +151,7 @@ TEST(Moving, ListsAndTrajectoriesAreInputs) {
   }
 }
 
+// The second camera goes along with the first, and then 0.2 m before it, where it should see the wall nearer.
 TEST(Moving, InfoComparesCamerasWhereTheyWere) {
   const TemporaryFolder folder;
   write_approach(folder, R"("pose_gap_s": 0.3, "shared_clock": true, "tolerance_s": 0)");
@@ -153,10 +159,16 @@ TEST(Moving, InfoComparesCamerasWhereTheyWere) {
   const std::size_t begin = rig.find("[{") + 1;
   std::string second = rig.substr(begin, rig.rfind(']') - begin);
   second.replace(second.find("\"hand\""), 6, "\"other\"");
+  second.replace(second.find("groundtruth.txt"), 15, "other.txt");
   (void)folder.write("rig.json", rig.insert(rig.rfind(']'), ", " + second));
-  const auto result = run_command("info .", folder);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, ::testing::ContainsRegex("hand to other +0 mm +100 % +0 mm +100 % +0 % +0 %"));
+  for (const bool before : {false, true}) {
+    (void)folder.write("other.txt", poses_of_approach(before ? 0.2 : 0));
+    const auto result = run_command("info .", folder);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out,
+                ::testing::ContainsRegex(before ? "hand to other +20[01] mm +0 % +20[01] mm +0 % +100 % +0 %"
+                                                : "hand to other +0 mm +100 % +0 mm +100 % +0 % +0 %"));
+  }
 }
 
 /// The two cameras of the wall, not triggered together.

@@ -270,6 +270,50 @@ TEST(RobotInRecording, APaddingBelowTheSensorsMarginIsSaidWithTheOneToState) {
   EXPECT_NEAR(std::stod(stated), 0.03 * std::hypot(1, std::hypot(160, 120) / 260), 0.001);
 }
 
+TEST(RobotInRecording, ThePaddingIsComparedWithTheMarginsOfEachCamera) {
+  const TemporaryFolder folder;
+  write_cell(folder);
+  auto file = rig_file();
+  file.rig.cameras[0].margins = CameraMargins{.sensor = {0.002, 0, 0, 0}, .smallest_obstacle_m = 0};
+  file.rig.cameras[1].margins = CameraMargins{.sensor = {0.03, 0, 0, 0}, .smallest_obstacle_m = 0};
+  files::save_rig(file, folder / "rig.json");
+  std::string question = kQuestion + kRobot + "--frames 3 --robot-padding 0.01 ";
+  question.erase(question.find("--margin-constant"), 24);
+  const auto result = run_command(question, folder);
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.err, Not(HasSubstr("camera 'left': --robot-padding")));
+  EXPECT_THAT(result.err, HasSubstr("camera 'right': --robot-padding 0.01 is less "));
+}
+
+// The robot stands still, but its joints might have moved: one at the speed of the URDF, the other as stated.
+TEST(RobotInRecording, AnImageBesideTheJointsThickensTheLayer) {
+  const TemporaryFolder folder;
+  write_cell(folder);
+  (void)folder.write("joints.csv", "time_s,pan,tilt\n-0.3,0.2,-0.3\n0.3,0.2,-0.3\n");
+  const auto layer_m = [&](const std::string& options) {
+    const std::string question = kQuestion + kRobot + "--robot-padding 0.02 --frames 3 --joint-gap 1 ";
+    return std::stod(column(run_command(question + options, folder), "blind_m").at("3 hand"));
+  };
+  const double exact_m = layer_m("--joint-time-error 0 --joint-speed 0");
+  const double of_urdf_m = layer_m("--joint-time-error 0.1 --joint-speed 0");
+  EXPECT_GT(of_urdf_m, exact_m + 0.03) << "0.1 rad at 0.4 m";
+  EXPECT_GT(layer_m("--joint-time-error 0.1 --joint-speed 1"), of_urdf_m + 0.05);
+}
+
+// Rows by frame number say nothing of the images' times: what is remembered grows by those.
+TEST(RobotInRecording, ImagesKeepTheirTimesWhateverTheRowsAreOf) {
+  const TemporaryFolder folder;
+  write_cell(folder);
+  std::string question = kQuestion + kRobot + "--robot-padding 0.02 --half-exposure 0 --memory unknown ";
+  question.replace(question.find("--v-max 0"), 9, "--v-max 0.5");
+  const std::string pockets = "--robot-pockets ignored --ignored-pocket 0.6";
+  question.replace(question.find(pockets), pockets.size(), "--robot-pockets obstacle");
+  const auto by_frame = run_command(question, folder);
+  ASSERT_EQ(by_frame.exit_code, 0) << by_frame.err;
+  (void)folder.write("joints.csv", "time_s,pan,tilt\n0,0.2,-0.3\n0.1,-0.6,0.4\n");
+  EXPECT_EQ(run_command(question + "--joint-time-error 0", folder).out, by_frame.out);
+}
+
 TEST(RobotInRecording, DistancesWithinTheBlindLayerAreSaid) {
   const TemporaryFolder folder;
   write_cell(folder);
