@@ -192,6 +192,43 @@ TEST_F(BlindStop, GoesOnWhenTheStateIsBack) {
   EXPECT_EQ(simulated.not_followed(), 0);
 }
 
+TEST_F(BlindStop, AsksAtOnceWhenTheStateIsBack) {
+  settings_.evaluate_every = 5;
+  control::PolygonTask task(test::hexagon(model_));
+  AvoidanceLoop loop({model_}, task, cameras_, settings_);
+  control::SimulatedArm simulated(settings_.controller.limits, kLoopPeriod, test::bent());
+  Arm arm(simulated);
+  ASSERT_TRUE(loop.start(arm));
+  for (int k = 0; k < 20; ++k) {
+    arm.fault = k == 11 || k == 12 ? std::optional(Fault::no_state) : std::nullopt;
+    (void)loop.cycle(arm, k * kLoopPeriod);
+    EXPECT_EQ(loop.report().evaluated, k == 0 || k == 5 || k == 10 || k == 13 || k == 18) << k;
+    simulated.advance();
+  }
+}
+
+// The joints brake alike, but a long tool goes farther than the flange that holds it.
+TEST_F(BlindStop, TellsTheWayOfThePartThatGoesFarthest) {
+  const auto way_m = [&](double tool_m) {
+    settings_.parts[0].capsule = Capsule::point({0, 0, tool_m});
+    control::PolygonTask task(test::hexagon(model_));
+    AvoidanceLoop loop({model_}, task, cameras_, settings_);
+    control::SimulatedArm simulated(settings_.controller.limits, kLoopPeriod, test::bent());
+    Arm arm(simulated);
+    EXPECT_TRUE(loop.start(arm));
+    for (int k = 0; k < 200; ++k) {
+      EXPECT_TRUE(loop.cycle(arm, k * kLoopPeriod));
+      simulated.advance();
+    }
+    arm.fault = Fault::no_state;
+    EXPECT_FALSE(loop.cycle(arm, 200 * kLoopPeriod));
+    return loop.report().reason.braking_m;
+  };
+  const double of_flange_m = way_m(0);
+  EXPECT_GT(of_flange_m, 0.001);
+  EXPECT_GT(way_m(2), 1.5 * of_flange_m);
+}
+
 TEST_F(BlindStop, ALostCameraLimitsMotionAndDoesNotPush) {
   for (const ProximityState state : {ProximityState::unmeasured, ProximityState::measured}) {
     cameras_ = {};

@@ -294,6 +294,20 @@ TEST(SearchEvaluator, AnImageWithoutATimeIsOfAnyAge) {
       << "without a clock it is asked about itself";
 }
 
+TEST(SearchEvaluator, AnImageThatIsNoneHasNoTime) {
+  const Rig rig = rig_of(2);
+  SearchEvaluator evaluator(rig, settings_for(rig));
+  const Wall wall;
+  ASSERT_TRUE(evaluator.update(0, wall.frame(1.0)).taken());
+  ASSERT_TRUE(evaluator.update(1, wall.frame(1.0)).taken());
+  (void)evaluator.distance(kPoint, 1.0);
+  EXPECT_EQ(evaluator.image_time_s(0), 1.0);
+  ASSERT_FALSE(evaluator.update(0, Frame{}).taken());
+  (void)evaluator.distance(kPoint, 1.0);
+  EXPECT_TRUE(std::isnan(evaluator.image_time_s(0))) << "the image before it is gone";
+  EXPECT_EQ(evaluator.image_time_s(1), 1.0);
+}
+
 TEST(SearchEvaluator, AMemoryDoesNotOutliveItsCameras) {
   for (const double v_max_m_s : {0.0, 0.1}) {
     const Rig rig = rig_of(2);
