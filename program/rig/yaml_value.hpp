@@ -1,7 +1,7 @@
 // YAML and JSON texts of other programs, with errors that name the place. JSON is read as the YAML that it is, too.
 #pragma once
 
-#include <yaml-cpp/node/node.h>
+#include <yaml-cpp/yaml.h>  // all of it: node/node.h alone leaves YAML::Node's inline functions undefined
 
 #include <string>
 #include <string_view>
