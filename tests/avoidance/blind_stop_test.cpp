@@ -386,7 +386,7 @@ TEST_F(BlindStop, NamesTheCameraThatNeverSentAnything) {
     cameras_.frozen_from_s[1 - silent] = 1;
     control::PolygonTask task(test::hexagon(model_));
     AvoidanceLoop loop({model_}, task, cameras_, settings_);
-    control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+    control::SimulatedArm arm(settings_.controller.limits, kLoopPeriod, test::bent());
     ASSERT_TRUE(loop.start(arm));
     ASSERT_TRUE(loop.cycle(arm, 3));
     EXPECT_EQ(loop.report().lost_cameras, 2);
@@ -398,7 +398,7 @@ TEST_F(BlindStop, NamesTheCameraThatNeverSentAnything) {
 TEST_F(BlindStop, TellsTheThickestLayer) {
   control::PolygonTask task(test::hexagon(model_));
   AvoidanceLoop loop({model_}, task, cameras_, settings_);
-  control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+  control::SimulatedArm arm(settings_.controller.limits, kLoopPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   cameras_.layer_of_part_m = {0.01, 0.05, 0.02};
   ASSERT_TRUE(loop.cycle(arm, 1));
@@ -415,7 +415,7 @@ TEST_F(BlindStop, NamesAPartWithinTheRangeOfItsLaw) {
   settings_.controller.body.rho_m = 0.3;
   control::PolygonTask task(test::hexagon(model_));
   AvoidanceLoop loop({model_}, task, cameras_, settings_);
-  control::SimulatedArm arm(settings_.controller.limits, kPeriod, test::bent());
+  control::SimulatedArm arm(settings_.controller.limits, kLoopPeriod, test::bent());
   ASSERT_TRUE(loop.start(arm));
   cameras_.of_part_m = {5, 0.5};
   ASSERT_TRUE(loop.cycle(arm, 1));
