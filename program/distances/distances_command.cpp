@@ -16,6 +16,7 @@
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "program/distances/distances_plan.hpp"
 #include "program/distances/frame_picture.hpp"
+#include "program/distances/least_padding.hpp"
 #include "program/output_file.hpp"
 #include "program/usage_error.hpp"
 #include "program/warning.hpp"
@@ -135,11 +136,15 @@ void run(const DistancesOptions& options) {
     warn(warning);
   }
   say(plan.assumptions);
-  output.write(writer.header());
-
   if (plan.robot) {
     say({plan.robot->joints_note()});
   }
+  if (plan.least_padding) {
+    output.write(least_padding_text(plan));
+    output.commit();
+    return;
+  }
+  output.write(writer.header());
   WithinLayer within_layer;
   report::ProgressLine progress("frame", plan.frames.size());
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {

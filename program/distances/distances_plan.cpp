@@ -1,6 +1,7 @@
 #include "program/distances/distances_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -175,6 +176,45 @@ void check_memory(const DistancesOptions& options, const files::Recording& recor
   }
 }
 
+/// What the least padding is asked with; nothing where it is not asked for.
+std::optional<avoidance::LeastPaddingSettings> least_padding_settings(const DistancesOptions& options, bool asks_links,
+                                                                      const files::Recording& recording,
+                                                                      std::size_t frames) {
+  if (!options.robot.least_padding) {
+    return std::nullopt;
+  }
+  if (!asks_links || options.evaluation.method != "search") {
+    fail_usage("--least-padding asks for the robot's links: give --method search, and no --point and --points");
+  }
+  // The links of a frame stand where they are at one time, for cameras that stand.
+  if (recording.moves() || recording.has_time_stamps()) {
+    fail_usage("--least-padding takes cameras that stand still and numbered images; this recording has ",
+               recording.moves() ? "a camera that moves" : "time stamps");
+  }
+  const std::array<std::pair<bool, const char*>, 5> of_distances{
+      {{!options.pictures.empty(), "--pictures"},
+       {options.reasons, "--reasons"},
+       {options.format != "csv", "--format"},
+       {options.evaluation.collect == "hybrid", "--collect"},
+       {options.search.budget_nodes.has_value(), "--budget-nodes"}}};
+  for (const auto& [is_given, name] : of_distances) {
+    if (is_given) {
+      fail_usage(name, " has no effect with --least-padding, which answers no distances");
+    }
+  }
+  constexpr std::size_t kMostFrames = 100;  // all are kept, and looked at with every padding
+  if (frames > kMostFrames) {
+    fail_usage("--least-padding: ", frames, " frames, at most ", kMostFrames, "; choose some with --frames");
+  }
+  avoidance::LeastPaddingSettings settings;
+  settings.robot_within_m = options.robot.robot_within_m;
+  settings.evaluator.memory = search_memory(options.search);
+  settings.evaluator.max_image_age_s = kRecordedAge_s;
+  // The last quarter counts where the others fill a memory.
+  settings.warm_up = settings.evaluator.memory ? frames - std::max<std::size_t>(1, frames / 4) : 0;
+  return settings;
+}
+
 std::unique_ptr<DistanceEvaluator> make_search_evaluator(const Rig& rig, const views::Settings& settings,
                                                          const SearchOptions& options, bool hybrid) {
   as_usage([&] { views::validate(settings, rig); });
@@ -338,6 +378,11 @@ DistancesPlan plan_distances(const DistancesOptions& options) {
 
   auto robot = recorded_robot(options, recording, rig, margins, searches ? T_output_rig : Pose::Identity());
   const bool hybrid = options.evaluation.collect == "hybrid";
+  auto least_padding = least_padding_settings(options, asks_links, recording, indices.size());
+  if (least_padding) {
+    least_padding->search = search_settings(options.search, options.evaluation, principal, margins);
+    least_padding->least_joints = robot->least_joints();
+  }
   auto evaluator =
       searches ? make_search_evaluator(rig, search_settings(options.search, options.evaluation, principal, margins),
                                        options.search, hybrid)
@@ -356,6 +401,7 @@ DistancesPlan plan_distances(const DistancesOptions& options) {
           .points = std::move(points),
           .robot = std::move(robot),
           .evaluator = std::move(evaluator),
+          .least_padding = std::move(least_padding),
           .asks_links = asks_links,
           .takes_shapes = searches,
           .format = format,

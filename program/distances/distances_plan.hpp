@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "depthgrid/avoidance/least_padding.hpp"
 #include "depthgrid/core/distance_evaluator.hpp"
 #include "depthgrid/core/pose.hpp"
 #include "depthgrid/core/rig.hpp"
@@ -49,8 +51,9 @@ struct DistancesPlan {
   Points points;                         ///< none: the robot's links are asked for
   std::unique_ptr<RecordedRobot> robot;  ///< none: nothing is taken out of the images
   std::unique_ptr<DistanceEvaluator> evaluator;
-  bool asks_links = false;    ///< of the robot, in place of points
-  bool takes_shapes = false;  ///< spheres and capsules, not only points
+  std::optional<avoidance::LeastPaddingSettings> least_padding;  ///< asked for instead of distances
+  bool asks_links = false;                                       ///< of the robot, in place of points
+  bool takes_shapes = false;                                     ///< spheres and capsules, not only points
   AnswerFormat format = AnswerFormat::csv;
   AnswerColumns columns;
   double rho_m = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/robot/motion_padding.hpp"
 #include "depthgrid/robot/robot_parts.hpp"
 #include "depthgrid/robot/urdf.hpp"
 #include "program/usage_error.hpp"
@@ -107,17 +108,17 @@ RecordedRobot::RecordedRobot(const RecordedRobotOptions& options, const Rig& rig
          ": gives joint positions over time, but the recording says no times of its images (\"rate_hz\" in its rig "
          "file): add a column 'frame' with their numbers");
   }
-  const double error_s = time_error_s(options, rig, by_frame);
+  time_error_s_ = time_error_s(options, rig, by_frame);
+  joint_speeds_ = joint_speeds(options, robot_.model, time_error_s_);
   robot::ExposureSettings settings;
   settings.removal.padding_m = padding_m_;
-  settings.time_error_s = error_s;
-  settings.joint_speeds = joint_speeds(options, robot_.model, error_s);
+  settings.time_error_s = time_error_s_;
+  settings.joint_speeds = joint_speeds_;
   padded_ = std::make_unique<robot::FrameIntake>(rig_, robot_, *joints_.history, settings);
   settings.removal = {.padding_m = 0, .whole_pixels = false};
   settings.time_error_s = 0;
   bare_ = std::make_unique<robot::FrameIntake>(rig_, robot_, *joints_.history, settings);
-  const int least_joints = robot_.model.joints().size() > 1 ? 2 : 1;
-  parts_ = robot::moving_capsules(robot_.model, least_joints);
+  parts_ = robot::moving_capsules(robot_.model, least_joints());
   for (const RigCamera& camera : rig_.cameras) {
     measured_m_.emplace_back(camera.intrinsics.width_px, camera.intrinsics.height_px);
   }
@@ -167,6 +168,24 @@ void RecordedRobot::count(std::size_t camera, const Frame& frame, const RobotVie
     deepest_m_[camera] =
         std::max(deepest_m_[camera], static_cast<double>(*std::max_element(row, row + setup.intrinsics.width_px)));
   }
+}
+
+std::vector<double> RecordedRobot::motion_m() const {
+  const std::vector<robot::LinkCapsule> capsules = robot::link_capsules(robot_.model);
+  const double time_s = at_joint_times_.front().time_s;
+  std::vector<double> q(joint_speeds_.size());
+  (void)joints_.history->at(time_s, q);
+  // As robot::RobotAtExposure without accelerations.
+  const std::vector<double> unknown(q.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> moved(q.size());
+  const bool is_measured = joints_.history->greatest_motion(time_s, time_error_s_, q, joint_speeds_, unknown, moved);
+  for (std::size_t j = 0; j < moved.size(); ++j) {
+    const double at_most = joint_speeds_[j] * time_error_s_;
+    moved[j] = is_measured ? std::min(moved[j], at_most) : at_most;
+  }
+  std::vector<double> result(capsules.size());
+  robot::motion_padding(robot_.model, capsules, T_world_link_, moved, 1.0, result);
+  return result;
 }
 
 std::vector<files::ControlPoint> RecordedRobot::link_capsules() const {

@@ -43,6 +43,14 @@ class RecordedRobot {
   /// Of the last frames, by camera; one a pixel.
   [[nodiscard]] const std::vector<std::vector<RobotPixel>>& pixels() const noexcept { return pixels_; }
 
+  [[nodiscard]] const robot::RobotModel& model() const noexcept { return robot_.model; }
+  /// Links that fewer joints move are not asked for.
+  [[nodiscard]] int least_joints() const noexcept { return robot_.model.joints().size() > 1 ? 2 : 1; }
+  /// The links where they are in the last frames, and by how much the padding of each of the robot's capsules grows for
+  /// what they may have moved; at the first camera's time.
+  [[nodiscard]] const std::vector<Pose>& T_world_link() const noexcept { return T_world_link_; }
+  [[nodiscard]] std::vector<double> motion_m() const;
+
   [[nodiscard]] const std::string& joints_note() const noexcept { return joints_.note; }
   /// One line a camera: pixels taken for the robot, and its model's that were not, and why.
   [[nodiscard]] std::vector<std::string> pixel_lines() const;
@@ -56,6 +64,8 @@ class RecordedRobot {
   robot::PlacedRobot robot_;
   double start_s_;
   double padding_m_;
+  double time_error_s_ = 0;
+  std::vector<double> joint_speeds_;
   RecordedJoints joints_;
   std::unique_ptr<robot::FrameIntake> padded_;
   std::unique_ptr<robot::FrameIntake> bare_;  ///< the capsules alone

@@ -75,11 +75,27 @@ void add_recorded_robot_options(CLI::App& command, RecordedRobotOptions& options
                   "by how much the robot's capsules are thickened, metres (default 0): sensor, calibration and model; "
                   "what stands in this layer is not seen")
       ->group(kGroup);
+  command
+      .add_flag("--least-padding", options.least_padding,
+                "instead of distances: the least --robot-padding at which each link is clear in these frames, which "
+                "hold nobody, and the camera that decides it")
+      ->group(kGroup);
+  command
+      .add_option("--robot-within", options.robot_within_m,
+                  "for --least-padding: what is nearer to a link than this may be the robot, metres (default: from the "
+                  "margins)")
+      ->group(kGroup);
   add_robot_file_options(command, options.robot, kGroup);
 }
 
 void check_robot_options(const RecordedRobotOptions& options) {
   if (options.has_robot()) {
+    if (options.least_padding && options.padding_m) {
+      fail_usage("--least-padding finds the padding; leave out --robot-padding ", *options.padding_m);
+    }
+    if (options.robot_within_m && !options.least_padding) {
+      fail_usage("--robot-within has no effect without --least-padding");
+    }
     if (options.joints_file.empty()) {
       fail_usage("--urdf needs --joints FILE.csv with the joint positions of the recording");
     }
@@ -89,7 +105,7 @@ void check_robot_options(const RecordedRobotOptions& options) {
     }
     return;
   }
-  const std::array<std::pair<bool, const char*>, 11> given{
+  const std::array<std::pair<bool, const char*>, 13> given{
       {{!options.joints_file.empty(), "--joints"},
        {!options.still_joints.empty(), "--joint"},
        {options.joint_unit.has_value(), "--joint-unit"},
@@ -100,6 +116,8 @@ void check_robot_options(const RecordedRobotOptions& options) {
        {options.joint_speed.has_value(), "--joint-speed"},
        {options.base.has_value(), "--base"},
        {options.padding_m.has_value(), "--robot-padding"},
+       {options.least_padding, "--least-padding"},
+       {options.robot_within_m.has_value(), "--robot-within"},
        {!options.robot.packages.empty(), "--package"}}};
   for (const auto& [is_given, name] : given) {
     if (is_given) {

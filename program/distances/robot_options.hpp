@@ -24,6 +24,8 @@ struct RecordedRobotOptions {
   std::optional<double> joint_speed;
   std::optional<std::string> base;
   std::optional<double> padding_m;
+  bool least_padding = false;
+  std::optional<double> robot_within_m;  ///< for least_padding
 
   [[nodiscard]] bool has_robot() const noexcept { return !robot.file.empty(); }
 };
