@@ -55,7 +55,7 @@ TEST(MeshFormats, Stl) {
       9U);
   EXPECT_EQ(mesh_corners("\xEF\xBB\xBFsolid a\r\n" + facet + "endsolid\r\n", ".stl", "").size(),
             mesh_corners("solid a\n" + facet + "endsolid\n", ".stl", "").size());
-  for (const std::string trailing : {std::string(1, '\0'), std::string("\x1a"), std::string("made by hand\n")}) {
+  for (const std::string& trailing : {std::string(1, '\0'), std::string("\x1a"), std::string("made by hand\n")}) {
     EXPECT_EQ(mesh_corners("solid a\n" + facet + "endsolid a\n" + trailing, ".stl", "").size(), 3U);
   }
   EXPECT_THAT(message_of(".stl", "solid a\n" + facet + "endsolid a\nmore\n" + facet), HasSubstr("'more' stands where"))
