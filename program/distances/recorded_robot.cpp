@@ -149,8 +149,12 @@ std::span<const Frame> RecordedRobot::frames(int frame_number, std::span<const F
     frames_[k] = {padded.depth, padded.robot, seen[k].time_s};
     count(k, frames_[k], bare.robot);
   }
+  newest_s_ = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    newest_s_ = seen[k].depth.data != nullptr ? std::max(newest_s_, at_joint_times_[k].time_s) : newest_s_;
+  }
   std::vector<double> q(robot_.model.joints().size());
-  (void)joints_.history->at(at_joint_times_.front().time_s, q);
+  (void)joints_.history->at(newest_s_, q);
   (void)robot_.link_poses(q, T_world_link_);
   return frames_;
 }
@@ -172,13 +176,12 @@ void RecordedRobot::count(std::size_t camera, const Frame& frame, const RobotVie
 
 std::vector<double> RecordedRobot::motion_m() const {
   const std::vector<robot::LinkCapsule> capsules = robot::link_capsules(robot_.model);
-  const double time_s = at_joint_times_.front().time_s;
   std::vector<double> q(joint_speeds_.size());
-  (void)joints_.history->at(time_s, q);
+  (void)joints_.history->at(newest_s_, q);
   // As robot::RobotAtExposure without accelerations.
   const std::vector<double> unknown(q.size(), std::numeric_limits<double>::infinity());
   std::vector<double> moved(q.size());
-  const bool is_measured = joints_.history->greatest_motion(time_s, time_error_s_, q, joint_speeds_, unknown, moved);
+  const bool is_measured = joints_.history->greatest_motion(newest_s_, time_error_s_, q, joint_speeds_, unknown, moved);
   for (std::size_t j = 0; j < moved.size(); ++j) {
     const double at_most = joint_speeds_[j] * time_error_s_;
     moved[j] = is_measured ? std::min(moved[j], at_most) : at_most;

@@ -36,8 +36,8 @@ class RecordedRobot {
   /// its links then stand nowhere.
   std::span<const Frame> frames(int frame_number, std::span<const Frame> seen, const Rig& rig);
 
-  /// The capsules of the links that move, where they are in the last frames (at the first camera's time), world frame;
-  /// each is called as its link. Throws Error where there are none.
+  /// The capsules of the links that move, where they are at the newest of the last frames' images, which is the time
+  /// that answers are of; world frame, each called as its link. Throws Error where there are none.
   [[nodiscard]] std::vector<files::ControlPoint> link_capsules() const;
 
   /// Of the last frames, by camera; one a pixel.
@@ -47,7 +47,7 @@ class RecordedRobot {
   /// Links that fewer joints move are not asked for.
   [[nodiscard]] int least_joints() const noexcept { return robot_.model.joints().size() > 1 ? 2 : 1; }
   /// The links where they are in the last frames, and by how much the padding of each of the robot's capsules grows for
-  /// what they may have moved; at the first camera's time.
+  /// what they may have moved; at the newest image's time.
   [[nodiscard]] const std::vector<Pose>& T_world_link() const noexcept { return T_world_link_; }
   [[nodiscard]] std::vector<double> motion_m() const;
 
@@ -63,6 +63,7 @@ class RecordedRobot {
   Rig rig_;
   robot::PlacedRobot robot_;
   double start_s_;
+  double newest_s_ = 0;  ///< of the last frames' images, on the joints' clock
   double padding_m_;
   double time_error_s_ = 0;
   std::vector<double> joint_speeds_;

@@ -361,6 +361,8 @@ TEST(RobotInRecording, TheLeastPaddingAnswersNothingElse) {
   EXPECT_THAT(refused("--least-padding --point 0,0,1"), HasSubstr("--least-padding asks for the robot's links"));
   EXPECT_THAT(refused("--least-padding --pictures p"), HasSubstr("--pictures has no effect with --least-padding"));
   EXPECT_THAT(refused("--least-padding --reasons"), HasSubstr("--reasons has no effect"));
+  EXPECT_THAT(refused("--least-padding --robot-within 250"), HasSubstr("is it in millimetres?"));
+  EXPECT_THAT(refused("--least-padding --robot-within=-0.1"), HasSubstr("must be 0 to 1 m"));
   EXPECT_THAT(refused("--robot-within 0.1"), HasSubstr("no effect without --least-padding"));
   const auto none = run_command(kQuestion + "--least-padding", folder);
   EXPECT_THAT(none.err, HasSubstr("--least-padding has no effect without a robot"));
@@ -520,7 +522,13 @@ TEST(RobotInRecording, IsTakenWhereItWasAtEachTimeStampAndTheCameraToo) {
   EXPECT_THAT(result.err, ContainsRegex(all_taken("right", "2 images")));
   ASSERT_EQ(distances.size(), 4U) << result.err;
   for (const int frame : {0, 1}) {
-    const auto links = links_at(stamped_position(kLeftTimes_s[static_cast<std::size_t>(frame)]));
+    // Where they are at the newer image, the right one: that is the time of the answers.
+    const auto links = links_at(stamped_position(kLeftTimes_s[static_cast<std::size_t>(frame)] + kRightLater_s));
+    Vector3d on_axis;
+    for (const auto& [name, axis] : {std::pair("on_axis_x_m", 0), {"on_axis_y_m", 1}, {"on_axis_z_m", 2}}) {
+      on_axis[axis] = std::stod(column(result, name).at(std::to_string(frame) + " fore"));
+    }
+    EXPECT_LT(distance_to_axis(links[1], on_axis), 0.001);
     const double fore_m = distance_m({links[1]}, kObstacle.a) - kObstacle.radius_m;
     const double hand_m = distance_m({links[2], links[3]}, kObstacle.a) - kObstacle.radius_m;
     for (const auto& [name, truth_m] : {std::pair("fore", fore_m), std::pair("hand", hand_m)}) {
