@@ -35,10 +35,12 @@ struct LeastPaddingSettings {
   robot::CapsuleOptions capsules{};      ///< of the robot
   int least_joints = 2;                  ///< links that fewer joints move are not asked for (moving_capsules())
   /// What is tested, ascending. By default 1 to 20 cm in steps of 5 mm: no model and no camera is better than 1 cm, a
-  /// layer of more than 20 cm hides a forearm, and 5 mm are what the search resolves by default.
+  /// layer of more than 20 cm hides a forearm, and 5 mm are what the search resolves by default. No step may be more
+  /// than clearance_m: it could jump over what stands there.
   std::vector<double> paddings_m = padding_ladder(0.01, 0.20, 0.005);
-  /// What has to be left between the layer and whatever is nearest. By default the loop's laws let a link approach from
-  /// 5 cm on, with 0.1 m/s at 10 cm: with less the arm hardly moves although nobody is there.
+  /// What has to be left between the layer and whatever is nearest, at the time of the images. By default the loop's
+  /// laws let a link approach from 5 cm on, with 0.1 m/s at 10 cm: with less the arm hardly moves although nobody is
+  /// there. They get v_max times the images' age less, so add that where what is near is not the robot itself.
   double clearance_m = 0.10;
   /// What is nearer to a link than this may be the robot: what the declared errors explain. Nothing: robot_within_m().
   std::optional<double> robot_within_m{};
@@ -95,9 +97,9 @@ struct LeastPadding {
   double robot_within_m = 0;  ///< as used
 };
 
-/// **A link has enough left** at a padding p when in every cell clear_of_layer_m() of each of its capsules, what the
-/// loop's laws get, is at least clearance_m: a thicker layer has to be left alone by as much, so what it hides has to
-/// vanish, too, before hiding more helps.
+/// **A link has enough left** at a padding p when in every cell clear_of_layer_m() of each of its capsules, at the time
+/// of the images, is at least clearance_m: a thicker layer has to be left alone by as much, so what it hides has to
+/// vanish, too, before hiding more helps. The loop's laws get v_max times the images' age less.
 ///
 /// **It is clear** when, besides, its layer covers nothing that is no part of the robot. At a smaller padding without
 /// enough left nothing is known nearer than u = max(distance, blind_m); u must be at most robot_within_m (what is so

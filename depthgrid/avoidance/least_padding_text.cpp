@@ -51,6 +51,9 @@ std::string nearest_text(const NotClear& why, const Rig& rig, const Pose& T_outp
   const Proximity& nearest = why.answer.nearest;
   if (why.at_the_border) {
     const double border_m = std::isnan(nearest.known_to_m) ? nearest.distance_m : nearest.known_to_m;
+    if (std::isnan(border_m)) {
+      return "it reaches out of the space of interest";
+    }
     return "the border of the space of interest is " + metres(border_m) + " m from it";
   }
   if (!nearest.nearest_world.allFinite()) {
@@ -117,9 +120,9 @@ std::string remark(const LinkPadding& link, const LeastPadding& found, const Rig
   if (!link.least_m && link.before) {
     text = link.name + " is not clear up to " + metres(link.tested_to_m) + " m. With " +
            metres(link.before->padding_m) + " m " + nearest_text(*link.before, rig, T_output_world) + ".";
-    if (link.covers_from_m) {
-      text += " A layer that covers this hides what is farther than " + metres(found.robot_within_m) +
-              " m from the link, and so no part of the robot.";
+    if (link.covers_from_m && !link.before->at_the_border) {
+      text += " From " + metres(*link.covers_from_m) + " m on a layer hides what is farther than " +
+              metres(found.robot_within_m) + " m from the link, and so no part of the robot.";
     }
     text += "\n";
   }

@@ -11,6 +11,7 @@ namespace depthgrid::avoidance {
 
 namespace {
 
+constexpr double kRounding_m = 1e-9;
 constexpr double kModel_m = 0.02;  ///< deflection, cables, calibration of the joints
 
 }  // namespace
@@ -43,8 +44,14 @@ PaddingProblem padding_problem(const Rig& rig, const robot::RobotModel& model, s
   if (!(settings.clearance_m > 0 && std::isfinite(settings.clearance_m))) {
     fail("least padding: the clearance is ", settings.clearance_m, " m, must be above 0");
   }
-  if (settings.robot_within_m && !(*settings.robot_within_m >= 0)) {
-    fail("least padding: robot_within_m is ", *settings.robot_within_m, " m, must not be negative");
+  for (std::size_t p = 1; p < paddings.size(); ++p) {
+    if (paddings[p] - paddings[p - 1] > settings.clearance_m + kRounding_m) {
+      fail("least padding: the step from ", paddings[p - 1], " to ", paddings[p], " m is more than the clearance, ",
+           settings.clearance_m, " m, and could jump over what stands there");
+    }
+  }
+  if (settings.robot_within_m && !(*settings.robot_within_m >= 0 && std::isfinite(*settings.robot_within_m))) {
+    fail("least padding: robot_within_m is ", *settings.robot_within_m, " m, must be finite and not negative");
   }
   return problem;
 }

@@ -96,6 +96,11 @@ void check_robot_options(const RecordedRobotOptions& options) {
     if (options.robot_within_m && !options.least_padding) {
       fail_usage("--robot-within has no effect without --least-padding");
     }
+    constexpr double kMostWithin_m = 1;
+    if (options.robot_within_m && !(*options.robot_within_m >= 0 && *options.robot_within_m <= kMostWithin_m)) {
+      fail_usage("--robot-within is ", *options.robot_within_m, " m, must be 0 to ", kMostWithin_m,
+                 " m; is it in millimetres?");
+    }
     if (options.joints_file.empty()) {
       fail_usage("--urdf needs --joints FILE.csv with the joint positions of the recording");
     }

@@ -162,6 +162,8 @@ TEST(LeastPadding, TellsWhatCannotBeAsked) {
   cell.settings.warm_up = 1;
   EXPECT_THAT(told(), HasSubstr("1 of 1 cells are for the warm-up"));
   cell.settings = good;
+  cell.settings.paddings_m = {0.02, 0.13};
+  EXPECT_THAT(told(), HasSubstr("the step from 0.02 to 0.13 m is more than the clearance"));
   cell.settings.paddings_m = {0.02, 0.02};
   EXPECT_THAT(told(), HasSubstr("ascend"));
   cell.settings = good;
@@ -170,6 +172,15 @@ TEST(LeastPadding, TellsWhatCannotBeAsked) {
   cell.settings = good;
   cell.cells[0].seen.pop_back();
   EXPECT_THAT(told(), HasSubstr("cell 0 has 1 images"));
+}
+
+TEST(LeastPadding, ALinkOutsideOfTheSpaceOfInterestIsTold) {
+  test::PostCell cell = test::post_cell({{}});
+  cell.settings.search.space = views::BoxSpace{{5, 5, 5}, {6, 6, 6}};
+  cell.settings.search.policies.outside = views::Policy::ignored;
+  const std::string text = to_string(found_in(cell), cell.rig);
+  EXPECT_THAT(text, HasSubstr("it reaches out of the space of interest"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("nan")));
 }
 
 TEST(RobotWithin, IsTheSumOfWhatIsDeclared) {

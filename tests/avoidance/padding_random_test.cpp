@@ -103,7 +103,7 @@ TEST(LeastPaddingOfRandomCells, IsThatOfTheSlowTwin) {
       EXPECT_EQ(found.links[*found.decides].least_m, most_m) << what;
       of_several += most_m > cell.settings.paddings_m.front() ? 1 : 0;
     }
-    // What really stands there stays outside of the layer that was found, but for one step of 2 cm.
+    // What really stands there stays outside of the padding that was found, but for one step of 2 cm.
     for (std::size_t k = 0; k < twins.size(); ++k) {
       const Capsule& post = test::post_world(found.links[k].name == "post" ? 0 : 1);
       for (const Capsule& thing : cell.things_world) {
