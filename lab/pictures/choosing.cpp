@@ -78,7 +78,7 @@ Panel hole_panel() {
     return [s_m](double hole_px) { return s_m * 525 * 0.8 / (hole_px + 4) - s_m / 2; };
   };
   return {"s: what a hole says",
-          "width of the hole, px",
+          "width W of the hole, px (a lone pixel: 2)",
           "nothing is nearer than, m",
           16,
           8,
@@ -107,10 +107,10 @@ Panel exposure_panel() {
           "v_max, m/s",
           "e grows by, mm",
           2,
-          40,
+          80,
           4,
           4,
-          {{"8 ms", curve(0.008)}, {"33.3 ms", curve(1 / 30.0)}}};
+          {{"8 ms", curve(0.008)}, {"66.7 ms", curve(2 / 30.0)}}};
 }
 
 /// Half a voxel's diagonal, with half of a voxel pending on the average, less half the thinnest hidden thing.

@@ -40,6 +40,7 @@ void measure_budget_bounds(Stage& stage, const std::string& workload, const OurM
   setting.sensor = margins.sensor;
   setting.pose = margins.pose;
   SearchPeer ours(setting, kResolution);
+  SearchPeer unbounded(setting, kResolution);  // its own memory: ours knows no more than its budgets allow
   for (const std::int64_t nodes : {300, 1000, 3000}) {
     search::Budget budget;
     budget.nodes = nodes;
@@ -47,12 +48,13 @@ void measure_budget_bounds(Stage& stage, const std::string& workload, const OurM
     Calls cut;
     for (int set = 0; set < stage.frame_sets(); ++set) {
       ours.prepare(stage.frames(set), stage.arm_region());
+      unbounded.prepare(stage.frames(set), stage.arm_region());
       for (int i = 0; i < kSubSteps; ++i) {
         const Questions questions =
             as_points(random_workload_points(time_between_s(set, i), kWorkloadControlPoints, seed_of(set, i)));
         cut.ask(ours, questions, false, i == 0, budget);
         Calls whole;
-        whole.ask(ours, questions, false, false);
+        whole.ask(unbounded, questions, false, false);
         bounds.take(whole.last(), cut.last());
       }
     }
