@@ -9,9 +9,11 @@ run("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${tree}" -G Ninja ${tree_type}
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 "-DDEPTHGRID_WARNINGS_AS_ERRORS=${WARNINGS_AS_ERRORS}"
   -DDEPTHGRID_BUILD_TESTS=OFF -DDEPTHGRID_BUILD_LAB=OFF)
 run("${CMAKE_COMMAND}" --build "${tree}" --target depthgrid)
-if(EXISTS "${tree}/lib/libdepthgrid_avoidance.a")
-  message(FATAL_ERROR "the command alone builds a library that it does not use: this test says nothing")
+# The command uses all libraries by now: one that is missing stands for those that a smaller program would leave out.
+if(NOT EXISTS "${tree}/lib/libdepthgrid_avoidance.a")
+  message(FATAL_ERROR "the command was built without a library that it uses")
 endif()
+file(REMOVE "${tree}/lib/libdepthgrid_avoidance.a")
 
 # What cannot be built is said, and nothing is installed.
 file(RENAME "${tree}/build.ninja" "${tree}/hidden.ninja")
