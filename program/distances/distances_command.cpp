@@ -142,6 +142,7 @@ void run(const DistancesOptions& options) {
   if (plan.least_padding) {
     output.write(least_padding_text(plan));
     output.commit();
+    say(plan.robot->pixel_lines());  // a base that is wrong shows here
     return;
   }
   output.write(writer.header());

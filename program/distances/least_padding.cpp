@@ -1,10 +1,12 @@
 #include "program/distances/least_padding.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <span>
 #include <vector>
 
 #include "depthgrid/avoidance/least_padding.hpp"
+#include "depthgrid/core/error.hpp"
 #include "report/number_text.hpp"
 #include "report/progress_line.hpp"
 
@@ -52,10 +54,18 @@ std::string least_padding_text(DistancesPlan& plan) {
     cell.motion_m = plan.robot->motion_m();
     progress.update(cells.size());
   }
+  if (!plan.robot->is_in_an_image()) {
+    fail("the robot's capsules are in no image of these frames, so they say nothing of its padding; is --base right?");
+  }
   const avoidance::LeastPadding found =
       avoidance::least_padding(plan.rig, plan.robot->model(), cells, *plan.least_padding);
   std::string text = to_string(found, plan.rig, plan.T_output_world);
-  if (found.padding_m) {
+  const auto unclear = std::count_if(found.links.begin(), found.links.end(),
+                                     [](const avoidance::LinkPadding& link) { return !link.least_m; });
+  if (unclear > 0) {
+    text += "State no padding by this: " + std::to_string(unclear) + " of " + std::to_string(found.links.size()) +
+            " links are not clear with any that was tested.\n";
+  } else if (found.padding_m) {
     text += "So state --robot-padding " + report::fixed(*found.padding_m, 3) + "\n";
   }
   return text;

@@ -202,6 +202,11 @@ std::vector<files::ControlPoint> RecordedRobot::link_capsules() const {
   return points;
 }
 
+bool RecordedRobot::is_in_an_image() const noexcept {
+  return std::any_of(counts_.begin(), counts_.end(),
+                     [](const RobotPixelCount& count) { return count.on_capsules() > 0; });
+}
+
 std::vector<std::string> RecordedRobot::pixel_lines() const {
   std::vector<std::string> lines;
   lines.reserve(counts_.size());

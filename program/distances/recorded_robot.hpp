@@ -51,6 +51,9 @@ class RecordedRobot {
   [[nodiscard]] const std::vector<Pose>& T_world_link() const noexcept { return T_world_link_; }
   [[nodiscard]] std::vector<double> motion_m() const;
 
+  /// Whether a pixel of the frames so far shows its capsules.
+  [[nodiscard]] bool is_in_an_image() const noexcept;
+
   [[nodiscard]] const std::string& joints_note() const noexcept { return joints_.note; }
   /// One line a camera: pixels taken for the robot, and its model's that were not, and why.
   [[nodiscard]] std::vector<std::string> pixel_lines() const;

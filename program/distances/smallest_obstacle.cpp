@@ -3,7 +3,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "depthgrid/core/plausibility.hpp"
 #include "depthgrid/core/sensor_models.hpp"
+#include "program/usage_error.hpp"
 
 namespace depthgrid::program {
 
@@ -17,6 +19,9 @@ struct Declared {
 Declared declared(std::optional<double> own_m, const std::optional<std::string>& sensor, const RigCamera& camera,
                   double rig_file_m) {
   if (own_m) {
+    CameraMargins stated;
+    stated.smallest_obstacle_m = *own_m;
+    as_usage([&stated] { check_plausible(stated, "--smallest-obstacle"); });
     return {*own_m, "--smallest-obstacle"};
   }
   if (!std::isnan(rig_file_m)) {

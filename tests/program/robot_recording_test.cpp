@@ -361,6 +361,18 @@ TEST(RobotInRecording, TheLeastPaddingAnswersNothingElse) {
   EXPECT_THAT(refused("--least-padding --point 0,0,1"), HasSubstr("--least-padding asks for the robot's links"));
   EXPECT_THAT(refused("--least-padding --pictures p"), HasSubstr("--pictures has no effect with --least-padding"));
   EXPECT_THAT(refused("--least-padding --reasons"), HasSubstr("--reasons has no effect"));
+  const auto elsewhere =
+      run_command(kQuestion + "--urdf arm.urdf --joints joints.csv --base 0,-30,0 --least-padding", folder);
+  EXPECT_EQ(elsewhere.exit_code, 1);
+  EXPECT_THAT(elsewhere.err, HasSubstr("in no image of these frames, so they say nothing of its padding; is --base"));
+  // 8 cm beside the robot, whose own pixels are left then, and farther away than a layer may cover.
+  const auto beside = run_command(kQuestion +
+                                      "--urdf arm.urdf --joints joints.csv --base 0.1,0.08,0.2,0,0,0.5 --frames 4 "
+                                      "--robot-within 0.05 --least-padding",
+                                  folder);
+  EXPECT_EQ(beside.exit_code, 0) << beside.err;
+  EXPECT_THAT(beside.out, AllOf(HasSubstr("State no padding by this"), Not(HasSubstr("So state"))));
+  EXPECT_THAT(beside.err, HasSubstr("show its capsules: taken"));
   EXPECT_THAT(refused("--least-padding --robot-within 250"), HasSubstr("is it in millimetres?"));
   EXPECT_THAT(refused("--least-padding --robot-within=-0.1"), HasSubstr("must be 0 to 1 m"));
   EXPECT_THAT(refused("--robot-within 0.1"), HasSubstr("no effect without --least-padding"));

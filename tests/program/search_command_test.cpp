@@ -60,6 +60,7 @@ TEST(SearchCommand, SaysWhichSmallestObstacleItAssumes) {
   files::save_rig(file, folder / "rig.json");
   EXPECT_THAT(said("--sensor kinect_v1"),
               HasSubstr("'left' 0.03 m (the rig file), 'right' 0.05 m (recommended for kinect_v1); what"));
+  EXPECT_THAT(said("--sensor ideal --smallest-obstacle 5"), HasSubstr("smallest obstacle is 5 m"));
   EXPECT_THAT(said("--sensor ideal --smallest-obstacle=-1"), HasSubstr("smallest obstacle is -1 m"));
   EXPECT_THAT(run_command("distances . --frames 5 --sensor ideal --smallest-obstacle 0.02 " + kPoint, folder).err,
               HasSubstr("--smallest-obstacle has no effect with --method corrected"));
