@@ -116,10 +116,6 @@ struct MemoryStore::State {
     return written;
   }
 
-  void look_at_waiting() noexcept {
-    writer.look_at_waiting([this](std::uint32_t cameras) { look_at(cameras); });
-  }
-
   [[nodiscard]] std::uint32_t acquire() const noexcept {
     return views::hold_newest(
         newest, [this](std::uint32_t slot) { references[slot].fetch_add(1); },
@@ -154,16 +150,14 @@ void MemoryStore::take(std::size_t camera) noexcept {
   if (!state_->writer.leave(bit)) {
     ++state_->dropped;  // the one that waits is looked at no more: the camera has a newer one
   }
-  state_->look_at_waiting();
+  state_->writer.look_at_waiting([this](std::uint32_t cameras) { state_->look_at(cameras); });
 }
 
 bool MemoryStore::occupy(std::span<const Capsule> capsules, double distance_m, double time_s) noexcept {
   bool written = false;
-  if (!state_->writer.try_write([&] { written = state_->let_go(capsules, distance_m, time_s); })) {
-    return false;
-  }
-  state_->look_at_waiting();
-  return written;
+  const bool was_free = state_->writer.try_write([&] { written = state_->let_go(capsules, distance_m, time_s); },
+                                                 [this](std::uint32_t cameras) { state_->look_at(cameras); });
+  return was_free && written;
 }
 
 double MemoryStore::released_s() const noexcept { return state_->released_s.load(); }

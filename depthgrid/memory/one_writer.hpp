@@ -34,14 +34,15 @@ class OneWriter {
     }
   }
 
-  /// Calls write() unless somebody else writes; false then. Call look_at_waiting() after it.
-  template <class Write>
-  [[nodiscard]] bool try_write(Write&& write) noexcept {
+  /// Calls write() unless somebody else writes; false then. Then look(cameras) at those that waited meanwhile.
+  template <class Write, class Look>
+  [[nodiscard]] bool try_write(Write&& write, Look&& look) noexcept {
     if (busy_.exchange(true)) {
       return false;
     }
     write();
     busy_.store(false);
+    look_at_waiting(look);
     return true;
   }
 

@@ -55,13 +55,11 @@ struct Store {
     --writing;
   }
 
-  void look_at_waiting() {
-    writer.look_at_waiting([this](std::uint32_t cameras) {
-      write([this, cameras](Space& space) {
-        for (std::size_t k = 0; k < kCameras; ++k) {
-          space.images[k] = ((cameras >> k) & 1U) != 0 ? fed[k] : space.images[k];
-        }
-      });
+  void look_at(std::uint32_t cameras) {
+    write([this, cameras](Space& space) {
+      for (std::size_t k = 0; k < kCameras; ++k) {
+        space.images[k] = ((cameras >> k) & 1U) != 0 ? fed[k] : space.images[k];
+      }
     });
   }
 
@@ -69,13 +67,13 @@ struct Store {
     step();
     ++fed[camera];
     static_cast<void>(writer.leave(std::uint32_t{1} << camera));
-    look_at_waiting();
+    writer.look_at_waiting([this](std::uint32_t cameras) { look_at(cameras); });
   }
 
   void put_down() {
-    if (writer.try_write([this] { write([](Space& space) { ++space.let_go; }); })) {
+    if (writer.try_write([this] { write([](Space& space) { ++space.let_go; }); },
+                         [this](std::uint32_t cameras) { look_at(cameras); })) {
       ++let_go;
-      look_at_waiting();
     }
   }
 
