@@ -181,6 +181,20 @@ TEST(RobotInRecording, ImagesKeepTheirTimesWhateverTheRowsAreOf) {
   EXPECT_EQ(run_command(question + "--joint-time-error 0", folder).out, by_frame.out);
 }
 
+// Space that no camera covers counts; what the robot hides is another thing.
+TEST(RobotInRecording, WhatItHidesCountsByAPolicyOfItsOwn) {
+  const TemporaryFolder folder;
+  write_cell(folder);
+  std::string question = kQuestion + kRobot + "--robot-padding 0.02 --frames 3 ";
+  question.replace(question.find("--unobserved ignored"), 20, "--unobserved obstacle");
+  const auto hand_m = [&] { return std::stod(column(run_command(question, folder), "distance_m").at("3 hand")); };
+  const double ignored_m = hand_m();
+  const std::string pockets = "--robot-pockets ignored --ignored-pocket 0.6";
+  question.replace(question.find(pockets), pockets.size(), "--robot-pockets obstacle");
+  EXPECT_GT(ignored_m, 0.1);
+  EXPECT_LT(hand_m(), 0.05);
+}
+
 TEST(RobotInRecording, DistancesWithinTheBlindLayerAreSaid) {
   const TemporaryFolder folder;
   write_cell(folder);
