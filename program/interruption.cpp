@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <cstddef>
 
@@ -24,8 +25,15 @@ struct Interruption {
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler gets nothing handed over
 std::array<Interruption, 3> interruptions{{{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}};
 
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): the same
+std::atomic<int> signals_left{0};  ///< before one ends the process
+
 /// Only async-signal-safe functions: unlink, write, _exit.
 extern "C" void end_on_signal(int signal) {
+  if (signals_left.load() > 1) {
+    signals_left.store(1);
+    return;
+  }
   remove_unfinished_files();
   for (const Interruption& interruption : interruptions) {
     if (interruption.signal == signal) {
@@ -37,6 +45,10 @@ extern "C" void end_on_signal(int signal) {
 }
 
 }  // namespace
+
+void ask_before_the_end() { signals_left.store(2); }
+
+bool stop_is_asked() noexcept { return signals_left.load() == 1; }
 
 void end_tidily_on_signals(const std::string& program_name) {
   const std::string erased = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";  // the progress line

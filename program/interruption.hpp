@@ -10,4 +10,9 @@ namespace depthgrid::program {
 /// stays ignored (nohup).
 void end_tidily_on_signals(const std::string& program_name);
 
+/// From now on the first of these signals only makes stop_is_asked() true, so that work ends with its summary; the
+/// second ends the process as above. Only after end_tidily_on_signals().
+void ask_before_the_end();
+[[nodiscard]] bool stop_is_asked() noexcept;
+
 }  // namespace depthgrid::program

@@ -1,78 +1,19 @@
 #include "program/rig/yaml_value.hpp"
 
-#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <utility>
 
+#include "depthgrid/cell/guarded_yaml.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/number_parsing.hpp"
 #include "depthgrid/core/printable_text.hpp"
-#include "depthgrid/core/text_encoding.hpp"
 
 namespace depthgrid::program {
 
 namespace {
-
-constexpr std::size_t kLargestText = std::size_t{1} << 20;
-constexpr int kDeepest = 32;
-constexpr int kMostValues = 200'000;
-
-/// Sees the text before anything is built of it.
-class Guard final : public YAML::EventHandler {
- public:
-  explicit Guard(const std::string& name) : name_(name) {}
-
-  void OnDocumentStart(const YAML::Mark& /*mark*/) override {}
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { count(mark); }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
-    fail(name_, ": line ", mark.line + 1, ": YAML aliases (*name) are not read, no calibration needs them");
-  }
-  void OnScalar(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                const std::string& /*value*/) override {
-    count(mark);
-  }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                       YAML::EmitterStyle::value /*style*/) override {
-    descend(mark);
-  }
-  void OnSequenceEnd() override { --depth_; }
-  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                  YAML::EmitterStyle::value /*style*/) override {
-    descend(mark);
-  }
-  void OnMapEnd() override { --depth_; }
-
- private:
-  void count(const YAML::Mark& mark) {
-    if (++values_ > kMostValues) {
-      fail(name_, ": line ", mark.line + 1, ": has more than ", kMostValues, " values, as no calibration has");
-    }
-  }
-  void descend(const YAML::Mark& mark) {
-    count(mark);
-    if (++depth_ > kDeepest) {
-      fail(name_, ": line ", mark.line + 1, ": nested deeper than ", kDeepest, " levels");
-    }
-  }
-
-  const std::string& name_;
-  int depth_ = 0;
-  int values_ = 0;
-};
-
-/// On one line, fit for a message.
-std::string shortened(std::string text) {
-  constexpr std::size_t kLongest = 60;
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
-  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
-}
 
 /// Runs what may throw the parser's own exceptions.
 template <class Call>
@@ -80,8 +21,7 @@ auto guarded(const std::string& context, const Call& call) {
   try {
     return call();
   } catch (const YAML::Exception& error) {
-    fail(context, "line ", error.mark.line + 1, ", column ", error.mark.column + 1,
-         ": no YAML or JSON: ", shortened(error.msg));
+    cell::fail_yaml(context, error);
   }
 }
 
@@ -91,21 +31,7 @@ YamlValue::YamlValue(const YAML::Node& node, std::string name, std::string place
     : node_(node), name_(std::move(name)), place_(std::move(place)) {}
 
 YamlValue::YamlValue(std::string_view text, const std::string& name) : name_(name) {
-  text = without_byte_order_mark(text, name + ": ");
-  if (text.size() > kLargestText) {
-    fail(name, ": has ", text.size(), " bytes, a calibration must have at most ", kLargestText);
-  }
-  if (text.starts_with("%YAML")) {
-    text.remove_prefix(std::min(text.find('\n'), text.size()));
-  }
-  const std::string owned(text);
-  node_.reset(guarded(name + ": ", [&] {
-    std::istringstream stream(owned);
-    YAML::Parser parser(stream);
-    Guard guard(name);
-    parser.HandleNextDocument(guard);
-    return YAML::Load(owned);
-  }));
+  node_.reset(cell::guarded_yaml(text, name, "a calibration"));
 }
 
 std::string YamlValue::context() const { return name_ + ": " + (place_.empty() ? "" : place_ + ": "); }
@@ -129,7 +55,8 @@ std::string YamlValue::text() const {
   }
   const std::string& text = node_.Scalar();
   if (!is_printable(text)) {
-    fail(context(), "'", shortened(text), "' holds a control character or a byte that is no UTF-8, must be one line");
+    fail(context(), "'", cell::shortened_yaml(text),
+         "' holds a control character or a byte that is no UTF-8, must be one line");
   }
   return text;
 }
@@ -138,7 +65,7 @@ double YamlValue::number() const {
   const std::string word = text();
   const std::optional<double> value = parse_number<double>(word);
   if (!value || !std::isfinite(*value)) {
-    fail(context(), "'", shortened(word), "' must be a finite number");
+    fail(context(), "'", cell::shortened_yaml(word), "' must be a finite number");
   }
   return *value;
 }

@@ -1,0 +1,135 @@
+// A robot cell as its file describes it: cameras, robot, what counts as an obstacle, what is asked, where answers go.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/core/pose.hpp"
+#include "depthgrid/memory/settings.hpp"
+#include "depthgrid/views/settings.hpp"
+
+namespace depthgrid::cell {
+
+/// Where a camera's images, or the joints' positions, come from.
+enum class SourceKind : std::uint8_t { recording, simulated, realsense, freenect, openni, ros2 };
+
+/// "recording", "simulated", "realsense", ...: as in the file.
+[[nodiscard]] std::string_view to_string(SourceKind kind) noexcept;
+
+/// A value of the file with its unit and where it comes from: "line 12", "default", "device", "model realsense_d435".
+struct ShownValue {
+  std::string key;  ///< as a path: "cameras[0].pose.position_m"
+  std::string value;
+  std::string unit;  ///< empty: none
+  std::string origin;
+};
+
+/// What is said of a camera's errors in place of its sensor model's numbers. Metres, radians, seconds.
+struct MarginEntry {
+  std::optional<double> constant_m{};
+  std::optional<double> linear{};
+  std::optional<double> quadratic_per_m{};
+  std::optional<int> lateral_px{};
+  std::optional<double> translation_m{};
+  std::optional<double> rotation_rad{};
+  std::optional<double> half_exposure_s{};
+  std::optional<double> time_uncertainty_s{};
+  std::optional<double> second_view_x_m{};
+};
+
+struct CameraEntry {
+  std::string name;
+  SourceKind source = SourceKind::recording;
+  std::filesystem::path recording{};          ///< its folder
+  std::string recorded_as{};                  ///< the camera's id in it
+  bool repeat = false;                        ///< a recording begins again at its end
+  std::string device{};                       ///< serial number, or topic
+  double rate_hz = 30;                        ///< of a simulated camera
+  std::filesystem::path rig_file{};           ///< says intrinsics and pose of the camera of this name
+  std::optional<PinholeCamera> intrinsics{};  ///< none: from the rig file, or from the device
+  std::optional<Pose> T_world_camera{};       ///< none: from the rig file
+  std::string sensor{};                       ///< a sensor model; empty: the rig file's, or none
+  MarginEntry margins{};                      ///< in place of the model's
+  double smallest_obstacle_m = 0;             ///< declared
+  bool equal_images = false;                  ///< the same pixels twice in a row are no failure
+  std::string place{};                        ///< "FILE:LINE:COLUMN: cameras[0]", for messages
+};
+
+struct JointsEntry {
+  SourceKind source = SourceKind::simulated;
+  std::filesystem::path file{};  ///< of recorded positions
+  std::string topic{};
+  bool repeat = false;
+  double rate_hz = 500;     ///< of simulated joints
+  double time_error_s = 0;  ///< between the joints' clock and the images'
+};
+
+struct RobotEntry {
+  std::string urdf{};  ///< a file, or the name of a robot that is built in: kuka_lwr4
+  bool is_built_in = false;
+  Pose T_world_base = Pose::Identity();
+  JointsEntry joints{};
+  double padding_m = 0;
+  bool margin_in_test = false;
+  std::optional<double> joint_acceleration{};  ///< the greatest of all joints, rad/s^2
+  std::string tool{};                          ///< link of the tool's tip: asked first; empty: none
+  std::string place{};
+};
+
+/// A point or a ball that stands still, world frame, metres.
+struct PointEntry {
+  std::string name;
+  Eigen::Vector3d at_world_m = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
+struct AskEntry {
+  double rate_hz = 500;
+  double rho_m = kDefaultRho;
+  double resolution_m = 0.005;
+  double stop_m = 0;                 ///< a part whose bound is not above this says stop
+  bool moving_links = false;         ///< every link that at least two joints move
+  std::vector<std::string> links{};  ///< or these
+  std::vector<PointEntry> points{};
+};
+
+struct AgeEntry {
+  double image_s = 0.5;
+  double joints_s = 0.1;
+};
+
+struct UdpEntry {
+  std::string host{};  ///< an address of IPv4
+  int port = 0;
+};
+
+struct OutputEntry {
+  std::optional<UdpEntry> udp{};
+  std::filesystem::path jsonl{};  ///< empty: none
+  bool terminal = true;
+};
+
+/// - Units: metres, radians, seconds; world frame. Angles of the file are degrees.
+/// - Paths are absolute, or relative to the working folder as the file's own path is.
+struct Cell {
+  std::filesystem::path file{};
+  std::string name{};
+  std::vector<CameraEntry> cameras{};
+  std::optional<RobotEntry> robot{};
+  views::BoxSpace space{};
+  views::Policies policies{};
+  double v_max_m_s = 0;
+  std::optional<memory::MemorySettings> memory{};  ///< none: declared that nothing is remembered
+  AskEntry ask{};
+  AgeEntry ages{};
+  OutputEntry outputs{};
+  std::vector<ShownValue> shown{};  ///< every value, in the file's order
+};
+
+}  // namespace depthgrid::cell

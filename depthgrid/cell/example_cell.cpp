@@ -1,0 +1,65 @@
+#include "depthgrid/cell/cell_file.hpp"
+
+namespace depthgrid::cell {
+
+std::string_view example_cell() noexcept {
+  return R"(# A robot cell for depthgrid: two RealSense D435 and a Franka Panda. Every number here is yours to check.
+# Lengths in metres, times in seconds, angles in degrees, as the names say. Paths are relative to this file.
+#   depthgrid cell check FILE    what is missing or implausible, and what each camera sees
+#   depthgrid run FILE           distances, until Ctrl-C
+
+name: panda cell
+
+# Nothing in the cell is smaller than this, so that small holes in the images count as what surrounds them.
+# 0 says nothing: every pixel without a reading may hide something.
+smallest_obstacle_m: 0.02
+
+cameras:
+  - name: left
+    source: realsense            # or recording, simulated, freenect, openni, ros2
+    serial: "000000000001"       # on the camera's underside
+    intrinsics: {width_px: 640, height_px: 480, fx_px: 385.0, fy_px: 385.0, cx_px: 319.5, cy_px: 239.5}
+    pose: {position_m: [1.8, 1.2, 1.4], look_at_m: [0, 0, 0.5]}   # of the depth imager, in the world
+    sensor: realsense_d435       # its noise, range and exposure
+    margins: {translation_m: 0.005, rotation_deg: 0.15}           # how well the pose is known
+  - name: right
+    source: realsense
+    serial: "000000000002"
+    intrinsics: {width_px: 640, height_px: 480, fx_px: 385.0, fy_px: 385.0, cx_px: 319.5, cy_px: 239.5}
+    pose: {position_m: [1.8, -1.2, 1.4], look_at_m: [0, 0, 0.5]}
+    sensor: realsense_d435
+    margins: {translation_m: 0.005, rotation_deg: 0.15}
+
+robot:
+  urdf: panda.urdf
+  base: {position_m: [0, 0, 0]}                      # of its root link, in the world; rpy_deg: [0, 0, 90] turns it
+  joints: {source: ros2, topic: /joint_states, time_error_s: 0.02}
+  padding_m: 0.10                # what is nearer to the robot than this is not seen: depthgrid run says how thick it is
+  tool: panda_hand
+
+# Where obstacles count: a box in the world.
+space: {low_m: [-1.2, -1.2, 0.02], high_m: [1.2, 1.2, 1.6]}
+
+# What counts as an obstacle. None of this has a default.
+policies:
+  unobserved: obstacle           # space that no camera looks at
+  outside: ignored               # space outside of the box; answers say how far they know
+  robot_pockets: obstacle        # the shadow right behind the robot; ignored needs ignored_pocket_m, and no memory
+v_max_m_s: 1.6                   # nothing moves faster: a person who walks
+memory: {start: unknown}         # what was seen free stays free until something could have come there; or none
+
+ask:
+  rate_hz: 500
+  links: moving                  # every link that at least two joints move; or a list of names
+  rho_m: 0.6                     # how far around them obstacles matter
+  stop_m: 0.10                   # a link whose distance is not above this says stop
+
+ages: {image_s: 0.2, joints_s: 0.05}   # older images free nothing; older joints: no answer
+
+outputs:
+  udp: {host: 127.0.0.1, port: 47000}  # a datagram an answer: depthgrid/network/datagram.h
+  terminal: true
+)";
+}
+
+}  // namespace depthgrid::cell

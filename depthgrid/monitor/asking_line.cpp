@@ -1,0 +1,205 @@
+#include "depthgrid/monitor/asking_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "depthgrid/core/blind_layer.hpp"
+#include "depthgrid/robot/motion_padding.hpp"
+#include "depthgrid/sensors/clock.hpp"
+
+namespace depthgrid::monitor {
+namespace {
+
+using avoidance::MotionLimit;
+
+/// Below everything where nothing is known.
+double room_m(const Answer& answer) noexcept {
+  const double clear_m = clear_of_layer_m(answer);
+  return std::isnan(clear_m) ? -1 : clear_m;
+}
+
+MotionLimit limit_of(const Answer& answer) noexcept {
+  if (std::isnan(clear_of_layer_m(answer))) {
+    return MotionLimit::unknown_distance;
+  }
+  if (answer.blind_m > 0 && answer.distance_now_m <= answer.blind_m) {
+    return MotionLimit::blind_layer;
+  }
+  if (answer.nearest.budget) {
+    return MotionLimit::budget;
+  }
+  return answer.nearest.state == ProximityState::beyond_rho ? MotionLimit::none : MotionLimit::obstacle;
+}
+
+}  // namespace
+
+AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::SearchEvaluator& evaluator,
+                       const robot::JointHistory* history, const JointLine* joints,
+                       const std::vector<std::unique_ptr<CameraLine>>& cameras)
+    : robot_(setup.robot),
+      asked_(setup.parts),
+      max_image_age_s_(setup.options.max_image_age_s),
+      evaluator_(evaluator),
+      history_(history),
+      joints_(joints),
+      cameras_(cameras) {
+  for (const cell::AskedPart& part : asked_) {
+    if (part.on_robot) {
+      links_.push_back(*part.on_robot);
+    }
+  }
+  if (robot_) {
+    for (const robot::Joint& joint : robot_->model.joints()) {
+      speeds_.push_back(joint.max_speed);
+    }
+    q_.resize(robot_->model.joints().size());
+    T_world_link_.assign(robot_->model.links().size(), Pose::Identity());
+  }
+  links_world_.resize(links_.size());
+  motion_m_.resize(links_.size());
+  answer_.parts.resize(asked_.size());
+  answer_.parts_world.resize(asked_.size());
+  answer_.camera_count = cameras_.size();
+  answer_.reason.stop_m = stop_m;
+  answer_.reason.v_max_m_s = setup.settings.v_max_m_s;
+}
+
+bool AskingLine::place_parts(double now_s) noexcept {
+  answer_.joints_age_s = 0;
+  bool placed = true;
+  if (robot_ && history_ != nullptr) {
+    answer_.joints_age_s = now_s - joints_->newest_s();
+    const robot::JointsAtTime joints = history_->at(now_s, q_);
+    placed = joints.known() && robot_->link_poses(q_, T_world_link_);
+    if (placed) {
+      robot::place(links_, T_world_link_, links_world_);
+      // Where the joints may have gone since their newest state.
+      robot::motion_padding(robot_->model, links_, T_world_link_, speeds_, joints.time_error_s, motion_m_);
+    }
+  }
+  std::size_t link = 0;
+  for (std::size_t i = 0; i < asked_.size(); ++i) {
+    if (!asked_[i].on_robot) {
+      answer_.parts_world[i] = asked_[i].at_world;
+      continue;
+    }
+    answer_.parts_world[i] = links_world_[link];
+    // Not finite: the evaluator answers not_evaluated.
+    answer_.parts_world[i].radius_m += placed ? motion_m_[link] : Proximity::kNaN;
+    ++link;
+  }
+  return placed;
+}
+
+void AskingLine::look_at_cameras() noexcept {
+  double newest_s = -std::numeric_limits<double>::infinity();
+  double oldest_s = std::numeric_limits<double>::infinity();
+  Reason& reason = answer_.reason;
+  reason.camera.reset();
+  for (std::size_t k = 0; k < cameras_.size(); ++k) {
+    const double image_s = evaluator_.image_time_s(k);
+    CameraBasis& basis = answer_.cameras[k];
+    basis.state = cameras_[k]->state();
+    basis.without_reading = cameras_[k]->without_reading();
+    basis.age_s = answer_.time_s - image_s;
+    basis.late = !(basis.age_s <= max_image_age_s_);
+    if (!basis.late) {
+      newest_s = std::max(newest_s, image_s);
+      oldest_s = std::min(oldest_s, image_s);
+    }
+    histograms_.image_age[k].add(basis.age_s);
+    if (!reason.camera && (basis.late || basis.state != CameraState::live)) {
+      reason.camera = k;
+      reason.camera_state = basis.state;
+      reason.camera_age_s = basis.age_s;
+    }
+  }
+  const double exposure_s = newest_s >= oldest_s ? newest_s : Proximity::kNaN;
+  const bool is_new = exposure_s != answer_.exposure_s && std::isfinite(exposure_s);
+  answer_.exposure_s = exposure_s;
+  answer_.skew_s = newest_s >= oldest_s ? newest_s - oldest_s : Proximity::kNaN;
+  reason.reaction_s = answer_.done_s - exposure_s;
+  histograms_.skew.add(answer_.skew_s);
+  if (is_new) {
+    histograms_.exposure_to_answer.add(reason.reaction_s);
+  }
+}
+
+void AskingLine::find_reason(bool placed) noexcept {
+  Reason& reason = answer_.reason;
+  reason.part.reset();
+  reason.joints_age_s = answer_.joints_age_s;
+  answer_.blind_m = 0;
+  double least_room_m = std::numeric_limits<double>::infinity();
+  double least_m = std::numeric_limits<double>::infinity();
+  bool has_unknown = false;
+  for (std::size_t i = 0; i < answer_.parts.size(); ++i) {
+    const Answer& part = answer_.parts[i];
+    answer_.blind_m = thicker(answer_.blind_m, part.blind_m);
+    has_unknown = has_unknown || std::isnan(room_m(part)) || room_m(part) < 0;
+    least_m = std::min(least_m, part.distance_now_m);
+    const double room = room_m(part);
+    // Of parts with equal room, 0 for one, the one that is nearer.
+    const bool nearer = !reason.part || room < least_room_m ||
+                        (room == least_room_m && part.distance_now_m < answer_.parts[*reason.part].distance_now_m);
+    if (nearer) {
+      least_room_m = room;
+      reason.part = i;
+    }
+  }
+  const Answer& worst = answer_.parts[reason.part.value_or(0)];
+  answer_.distance_m = has_unknown ? Proximity::kNaN : least_m;
+  answer_.clear_m = has_unknown ? Proximity::kNaN : least_room_m;
+  reason.nearest = worst.nearest;
+  reason.distance_m = worst.distance_now_m;
+  reason.clear_m = clear_of_layer_m(worst);
+  reason.blind_m = worst.blind_m;
+  reason.limit = limit_of(worst);
+  const bool any_image = std::isfinite(answer_.exposure_s);
+  if (!any_image) {
+    reason.limit = MotionLimit::no_images;
+  }
+  if (!placed) {
+    reason.limit = MotionLimit::no_joint_state;
+  }
+  answer_.stop = !(answer_.clear_m > reason.stop_m) || !any_image || !placed;
+}
+
+void AskingLine::note(bool was_stopped) noexcept {
+  answers_.fetch_add(1, std::memory_order_relaxed);
+  by_state_[static_cast<std::size_t>(answer_.reason.limit)].fetch_add(1, std::memory_order_relaxed);
+  stopped_.fetch_add(answer_.stop ? 1 : 0, std::memory_order_relaxed);
+  if (answer_.stop != was_stopped || !has_asked_) {
+    Event event;
+    event.time_s = answer_.time_s;
+    event.kind = answer_.stop ? EventKind::stop : EventKind::go;
+    event.reason = answer_.reason;
+    events_.push(event);
+    stops_.fetch_add(answer_.stop ? 1 : 0, std::memory_order_relaxed);
+  }
+}
+
+const CellAnswer& AskingLine::ask(double now_s) noexcept {
+  const bool was_stopped = answer_.stop;
+  const bool on_time = !has_asked_ || now_s > answer_.time_s;
+  if (has_asked_) {
+    histograms_.period.add(now_s - answer_.time_s);
+  }
+  ++answer_.sequence;
+  answer_.time_s = now_s;
+  const bool placed = place_parts(now_s);
+  evaluator_.evaluate(answer_.parts_world, now_s, answer_.parts);
+  answer_.done_s = sensors::clock_now_s();
+  histograms_.asking.add(answer_.done_s - now_s);
+  look_at_cameras();
+  find_reason(placed);
+  if (!on_time) {
+    answer_.reason.limit = MotionLimit::clock;
+    answer_.stop = true;
+  }
+  note(was_stopped);
+  has_asked_ = true;
+  return answer_;
+}
+
+}  // namespace depthgrid::monitor

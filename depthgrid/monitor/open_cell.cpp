@@ -1,0 +1,154 @@
+#include "depthgrid/monitor/open_cell.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/network/datagram_writer.hpp"
+#include "depthgrid/network/udp_sender.hpp"
+#include "depthgrid/sensors/recorded_camera.hpp"
+#include "depthgrid/sensors/recorded_joints.hpp"
+#include "depthgrid/sensors/simulated_camera.hpp"
+#include "depthgrid/sensors/simulated_joints.hpp"
+
+namespace depthgrid::monitor {
+namespace {
+
+using cell::SourceKind;
+
+/// One for everything that is recorded; null where nothing is.
+std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
+  double first_s = std::numeric_limits<double>::infinity();
+  double last_s = -std::numeric_limits<double>::infinity();
+  bool repeats = false;
+  for (const cell::CameraEntry& camera : cell.cameras) {
+    if (camera.source == SourceKind::recording) {
+      const sensors::RecordedSpan span = sensors::recorded_span(camera.recording, camera.recorded_as);
+      first_s = std::min(first_s, span.first_s);
+      last_s = std::max(last_s, span.last_s);
+      repeats = repeats || camera.repeat;
+    }
+  }
+  return first_s <= last_s ? std::make_shared<const sensors::Playback>(first_s, last_s, repeats) : nullptr;
+}
+
+std::unique_ptr<sensors::JointSource> joints_of(const cell::Cell& cell, const cell::CellSetup& setup,
+                                                const std::shared_ptr<const sensors::SimulatedCell>& simulated,
+                                                const std::shared_ptr<const sensors::Playback>& playback) {
+  const cell::JointsEntry& joints = cell.robot->joints;
+  std::vector<std::string> names;
+  for (const robot::Joint& joint : setup.robot->model.joints()) {
+    names.push_back(joint.name);
+  }
+  switch (joints.source) {
+    case SourceKind::simulated:
+      return std::make_unique<sensors::SimulatedJoints>(simulated, joints.rate_hz);
+    case SourceKind::recording:
+      if (playback == nullptr) {
+        fail(cell.robot->place, ": joints: a recording of joints is played beside a camera's, and no camera has one");
+      }
+      return std::make_unique<sensors::RecordedJoints>(joints.file, names, playback);
+    default:
+      fail(cell.robot->place, ": joints: source: ", to_string(joints.source),
+           " is not part of this build: recording, simulated");
+  }
+}
+
+}  // namespace
+
+Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup) {
+  const auto playback = playback_of(cell);
+  const bool simulated_joints = cell.robot && cell.robot->joints.source == SourceKind::simulated;
+  const bool is_simulated =
+      simulated_joints || std::any_of(cell.cameras.begin(), cell.cameras.end(),
+                                      [](const auto& camera) { return camera.source == SourceKind::simulated; });
+  sensors::SimulatedCellSettings scene;
+  scene.robot = setup.robot;
+  const auto simulated = is_simulated ? std::make_shared<const sensors::SimulatedCell>(scene) : nullptr;
+  Sources sources;
+  for (std::size_t k = 0; k < cell.cameras.size(); ++k) {
+    const cell::CameraEntry& camera = cell.cameras[k];
+    switch (camera.source) {
+      case SourceKind::simulated:
+        sources.cameras.push_back(
+            std::make_unique<sensors::SimulatedCamera>(simulated, setup.rig.cameras[k], camera.rate_hz, k));
+        break;
+      case SourceKind::recording:
+        sources.cameras.push_back(
+            std::make_unique<sensors::RecordedCamera>(camera.recording, camera.recorded_as, playback));
+        break;
+      default:
+        fail(camera.place, ": source: ", to_string(camera.source), " is not part of this build: recording, simulated");
+    }
+  }
+  if (cell.robot) {
+    sources.joints = joints_of(cell, setup, simulated, playback);
+  }
+  return sources;
+}
+
+MonitorSettings monitor_settings(const cell::Cell& cell) {
+  MonitorSettings settings;
+  settings.rate_hz = cell.ask.rate_hz;
+  settings.stop_m = cell.ask.stop_m;
+  settings.max_joints_age_s = cell.ages.joints_s;
+  for (const cell::CameraEntry& camera : cell.cameras) {
+    settings.equal_images.push_back(camera.equal_images);
+  }
+  return settings;
+}
+
+depthgrid_answer datagram_answer(const CellAnswer& answer) noexcept {
+  using network::rounded_down;
+  using network::rounded_up;
+  depthgrid_answer result{};
+  result.sequence = answer.sequence;
+  result.time_s = answer.time_s;
+  result.exposure_s = answer.exposure_s;
+  result.state = static_cast<std::uint8_t>(answer.reason.limit);
+  result.stop = answer.stop ? 1 : 0;
+  result.cameras = static_cast<std::uint8_t>(answer.camera_count);
+  result.parts = static_cast<std::uint8_t>(std::min<std::size_t>(answer.parts.size(), DEPTHGRID_MAX_PARTS));
+  result.distance_m = rounded_down(answer.distance_m);
+  result.clear_m = rounded_down(answer.clear_m);
+  result.blind_m = rounded_up(answer.blind_m);
+  result.skew_s = rounded_up(answer.skew_s);
+  result.joints_age_s = rounded_up(answer.joints_age_s);
+  result.latency_s = rounded_up(answer.done_s - answer.exposure_s);
+  for (std::size_t k = 0; k < answer.camera_count; ++k) {
+    result.image_age_s[k] = rounded_up(answer.cameras[k].age_s);
+    result.without_reading[k] = rounded_up(answer.cameras[k].without_reading);
+    result.late_cameras |= answer.cameras[k].late ? 1U << k : 0U;
+  }
+  for (std::size_t i = 0; i < result.parts; ++i) {
+    const Answer& part = answer.parts[i];
+    result.part[i].distance_m = rounded_down(part.distance_now_m);
+    for (int axis = 0; axis < 3; ++axis) {
+      result.part[i].nearest_m[axis] = static_cast<float>(part.nearest.nearest_world[axis]);
+    }
+    result.part[i].state = static_cast<std::uint8_t>(part.nearest.state);
+  }
+  return result;
+}
+
+namespace {
+
+class UdpOutput final : public Output {
+ public:
+  explicit UdpOutput(const cell::UdpEntry& to) : sender_(to.host, to.port) {}
+  void take(const CellAnswer& answer) override { (void)sender_.send(network::write_datagram(datagram_answer(answer))); }
+
+ private:
+  network::UdpSender sender_;
+};
+
+}  // namespace
+
+std::unique_ptr<Output> udp_output(const cell::UdpEntry& to) { return std::make_unique<UdpOutput>(to); }
+
+static_assert(static_cast<int>(avoidance::MotionLimit::clock) == DEPTHGRID_CLOCK);
+static_assert(static_cast<int>(avoidance::MotionLimit::blind_layer) == DEPTHGRID_BLIND_LAYER);
+static_assert(static_cast<int>(ProximityState::beyond_rho) == DEPTHGRID_BEYOND_RHO);
+static_assert(static_cast<int>(ProximityState::outside) == DEPTHGRID_OUTSIDE);
+
+}  // namespace depthgrid::monitor

@@ -1,0 +1,185 @@
+#include "program/cell/cell_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "depthgrid/cell/cell_file.hpp"
+#include "depthgrid/cell/cell_setup.hpp"
+#include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/core/usable_frame.hpp"
+#include "depthgrid/monitor/open_cell.hpp"
+#include "depthgrid/sensors/clock.hpp"
+#include "program/output_file.hpp"
+#include "program/usage_error.hpp"
+
+namespace depthgrid::program {
+namespace {
+
+/// How long a source is waited for.
+constexpr double kPatience_s = 3;
+
+void say(const std::string& line) { (void)std::fputs((printable(line) + "\n").c_str(), stdout); }
+
+/// Columns as wide as their longest text.
+void show_table(const std::vector<cell::ShownValue>& values) {
+  std::size_t key = 0;
+  std::size_t value = 0;
+  for (const cell::ShownValue& shown : values) {
+    key = std::max(key, shown.key.size());
+    value = std::max(value, shown.value.size() + shown.unit.size() + 1);
+  }
+  for (const cell::ShownValue& shown : values) {
+    std::string line = shown.key + std::string(key + 2 - shown.key.size(), ' ');
+    const std::string text = shown.value + (shown.unit.empty() ? "" : " " + shown.unit);
+    line += text + std::string(value + 2 - std::min(text.size(), value), ' ') + shown.origin;
+    say(line);
+  }
+}
+
+void show(const std::string& file) {
+  const cell::Cell cell = cell::load_cell(file);
+  std::vector<cell::ShownValue> values = cell.shown;
+  const cell::CellSetup setup = cell::setup(cell);
+  values.insert(values.end(), setup.shown.begin(), setup.shown.end());
+  show_table(values);
+}
+
+std::string fixed_text(const char* format, double value) {
+  std::array<char, 64> text{};
+  (void)std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+/// One image. Throws Error where there is none.
+void look_at(const std::string& name, sensors::DepthSource& source, const RigCamera& camera) {
+  source.open();
+  const sensors::SourceInfo& info = source.info();
+  sensors::DepthReading reading;
+  const double end_s = sensors::clock_now_s() + kPatience_s;
+  while (sensors::clock_now_s() < end_s) {
+    const sensors::Reading result = source.next(reading, end_s - sensors::clock_now_s());
+    if (result == sensors::Reading::nothing) {
+      continue;
+    }
+    if (result != sensors::Reading::got) {
+      fail(name,
+           ": opened, and then: ", result == sensors::Reading::ended ? "it ended without an image" : source.reason());
+    }
+    const double age_s = sensors::clock_now_s() - reading.time_s;
+    std::string line = name + ": " + info.name + (info.serial.empty() ? "" : " (" + info.serial + ")") + ", " +
+                       std::to_string(reading.depth.width_px) + " x " + std::to_string(reading.depth.height_px) +
+                       " pixels, image of " + fixed_text("%.3f s", reading.time_s) + ", " +
+                       fixed_text("%.1f ms old", 1e3 * age_s) + ", by the clock of " + info.clock;
+    if (const char* why = why_unusable(reading.depth, camera.intrinsics)) {
+      fail(name, ": its image cannot be used: ", why);
+    }
+    DepthImage measured(camera.intrinsics.width_px, camera.intrinsics.height_px);
+    normalise(with_stride(reading.depth), camera.rule, measured);
+    const std::size_t pixels =
+        static_cast<std::size_t>(measured.width_px()) * static_cast<std::size_t>(measured.height_px());
+    const auto none = std::count(measured.data(), measured.data() + pixels, 0.0F);
+    line += fixed_text(", %.1f %% of its pixels have a reading",
+                       100 - 100 * static_cast<double>(none) / static_cast<double>(pixels));
+    say(line);
+    source.close();
+    return;
+  }
+  fail(name, ": opened, and sent no image within ", kPatience_s, " s");
+}
+
+void look_at_joints(sensors::JointSource& source, const robot::RobotModel& model) {
+  source.open();
+  sensors::JointReading reading;
+  const sensors::Reading result = source.next(reading, kPatience_s);
+  if (result != sensors::Reading::got) {
+    fail("joints: opened, and sent nothing within ", kPatience_s, " s ", source.reason());
+  }
+  std::string line = "joints: " + source.info().name + ", state of " + fixed_text("%.3f s:", reading.time_s);
+  std::string beyond;
+  for (std::size_t i = 0; i < reading.q.size(); ++i) {
+    const robot::Joint& joint = model.joints()[i];
+    line += " " + joint.name + fixed_text(" %.3f", reading.q[i]);
+    if (!(reading.q[i] >= joint.lower && reading.q[i] <= joint.upper)) {
+      beyond += " " + joint.name;
+    }
+  }
+  say(line);
+  if (!beyond.empty()) {
+    fail("joints: beyond their limits:", beyond, ": degrees for radians, or another robot");
+  }
+  source.close();
+}
+
+void check(const std::string& file) {
+  const cell::Cell cell = cell::load_cell(file);
+  say(file + ": is read: " + std::to_string(cell.cameras.size()) + " cameras");
+  const cell::CellSetup setup = cell::setup(cell);
+  say(file + ": fits together: " + std::to_string(setup.parts.size()) + " parts are asked for");
+  for (const std::string& line : cell::implausible(cell, setup)) {
+    say("implausible: " + line);
+  }
+  monitor::Sources sources = monitor::make_sources(cell, setup);
+  std::vector<std::string> failures;
+  const auto attempt = [&](const auto& look) {
+    try {
+      look();
+    } catch (const Error& error) {
+      failures.emplace_back(error.what());
+      say("failed: " + failures.back());
+    }
+  };
+  for (std::size_t k = 0; k < sources.cameras.size(); ++k) {
+    attempt([&] { look_at(cell.cameras[k].name, *sources.cameras[k], setup.rig.cameras[k]); });
+  }
+  if (sources.joints != nullptr) {
+    attempt([&] { look_at_joints(*sources.joints, setup.robot->model); });
+  }
+  if (!failures.empty()) {
+    fail(failures.size(), " of ", sources.cameras.size() + (sources.joints != nullptr ? 1 : 0),
+         " sources failed, the first: ", failures.front());
+  }
+}
+
+void write_new(const std::string& file) {
+  // Exclusively: what somebody has written is not written over.
+  std::FILE* const out = std::fopen(file.c_str(), "wxe");
+  if (out == nullptr) {
+    std::error_code ignored;
+    fail(file, std::filesystem::exists(file, ignored)
+                   ? ": is there already, and is not written over: choose another name"
+                   : ": cannot be written: is its folder there?");
+  }
+  const std::string text(cell::example_cell());
+  const bool written = std::fputs(text.c_str(), out) >= 0;
+  if (std::fclose(out) != 0 || !written) {
+    fail(file, ": cannot be written");
+  }
+  say(file + ": written: two RealSense D435 and a Panda; edit it, then depthgrid cell check " + file);
+}
+
+}  // namespace
+
+void add_cell_command(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("cell", "the file that describes a robot cell: look at it, check it, begin one");
+  command.require_subcommand(1);
+  const auto add = [&](const char* name, const char* what, const char* argument, void (*work)(const std::string&)) {
+    const auto file = std::make_shared<std::string>();
+    CLI::App& sub = *command.add_subcommand(name, what);
+    sub.add_option("FILE", *file, argument)->required();
+    sub.callback([file, work] { work(*file); });
+  };
+  add("show", "every value with its unit and where it comes from", "a cell file", show);
+  add("check", "what is missing or implausible; opens each camera and the joints once", "a cell file", check);
+  add("new", "writes a commented cell file: two RealSense D435 and a Panda", "the file to write; it must not be there",
+      write_new);
+}
+
+}  // namespace depthgrid::program

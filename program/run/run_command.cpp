@@ -1,0 +1,194 @@
+#include "program/run/run_command.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "depthgrid/cell/cell_file.hpp"
+#include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/monitor/json_line.hpp"
+#include "depthgrid/monitor/open_cell.hpp"
+#include "depthgrid/sensors/clock.hpp"
+#include "program/interruption.hpp"
+#include "program/run/run_text.hpp"
+#include "program/usage_error.hpp"
+#include "program/warning.hpp"
+
+namespace depthgrid::program {
+namespace {
+
+/// Between two looks at what happened.
+constexpr double kLook_s = 0.1;
+/// Between two lines where nobody sees them change.
+constexpr double kLine_s = 1.0;
+constexpr std::size_t kToldStops = 10;
+/// Lines about events a second: a cell that flutters must not flood the log.
+constexpr int kMostLines = 10;
+
+struct RunOptions {
+  std::string cell;
+  std::optional<double> seconds;
+};
+
+struct CloseFile {
+  void operator()(std::FILE* file) const noexcept {
+    if (file != stdout) {
+      (void)std::fclose(file);
+    }
+  }
+};
+
+/// A line an answer. What the disk does not take is dropped by the monitor and counted.
+class JsonLines final : public monitor::Output {
+ public:
+  JsonLines(const std::filesystem::path& file, const monitor::Names& names)
+      : file_(file.filename() == "-" ? stdout : std::fopen(file.c_str(), "we")), names_(names) {
+    if (file_ == nullptr) {
+      fail(file.string(), ": cannot be written");
+    }
+  }
+  void take(const monitor::CellAnswer& answer) override {
+    const std::string line = monitor::json_line(answer, names_) + "\n";
+    (void)std::fputs(line.c_str(), file_.get());
+  }
+
+ private:
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  monitor::Names names_;
+};
+
+/// The lines on the terminal: one that changes, or one a second; and one an event.
+class Teller {
+ public:
+  Teller(bool shows_status, const monitor::Names& names)
+      : shows_status_(shows_status), is_terminal_(::isatty(STDERR_FILENO) == 1), names_(names) {}
+
+  void event(const monitor::Event& event, double begin_s) {
+    const std::string line = time_text(event.time_s - begin_s) + printable(monitor::event_line(event, names_));
+    if (event.kind == monitor::EventKind::stop) {
+      stops_.push_back(line);
+      if (stops_.size() > kToldStops) {
+        stops_.pop_front();
+      }
+    }
+    const auto second = static_cast<std::int64_t>(event.time_s - begin_s);
+    lines_ = second == second_ ? lines_ + 1 : 1;
+    second_ = second;
+    if (lines_ <= kMostLines) {
+      print(line);
+    } else if (lines_ == kMostLines + 1) {
+      print("           more than " + std::to_string(kMostLines) + " events in this second, the others are not told");
+    }
+  }
+
+  void status(const monitor::CellAnswer& answer, double begin_s) {
+    const double now_s = answer.time_s - begin_s;
+    if (!shows_status_ || (!is_terminal_ && now_s < next_s_)) {
+      return;
+    }
+    next_s_ = now_s + kLine_s;
+    std::string line = time_text(now_s) + printable(status_line(answer, names_));
+    if (is_terminal_) {
+      constexpr std::size_t kWidest = 160;
+      (void)std::fputs(("\r\033[K" + line.substr(0, kWidest)).c_str(), stderr);
+      (void)std::fflush(stderr);
+      has_status_ = true;
+    } else {
+      print(line);
+    }
+  }
+
+  void end() {
+    if (has_status_) {
+      (void)std::fputs("\r\033[K", stderr);
+    }
+  }
+  [[nodiscard]] std::vector<std::string> stops() const { return {stops_.begin(), stops_.end()}; }
+
+ private:
+  static std::string time_text(double seconds) {
+    std::array<char, 32> text{};
+    (void)std::snprintf(text.data(), text.size(), "%8.3f s  ", seconds);
+    return text.data();
+  }
+  void print(const std::string& line) {
+    (void)std::fputs(((has_status_ ? "\r\033[K" : "") + line + "\n").c_str(), stderr);
+    has_status_ = false;
+  }
+
+  bool shows_status_;
+  bool is_terminal_;
+  const monitor::Names& names_;
+  bool has_status_ = false;
+  double next_s_ = 0;
+  std::int64_t second_ = -1;
+  int lines_ = 0;
+  std::deque<std::string> stops_;
+};
+
+void run_cell(const RunOptions& options) {
+  if (options.seconds && !(*options.seconds > 0)) {
+    fail_usage("--seconds ", *options.seconds, ": must be above 0");
+  }
+  const cell::Cell cell = cell::load_cell(options.cell);
+  const cell::CellSetup setup = cell::setup(cell);
+  for (const std::string& line : cell::implausible(cell, setup)) {
+    warn(line);
+  }
+  monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup));
+  std::vector<std::string> outputs;
+  if (cell.outputs.udp) {
+    monitor.add(monitor::udp_output(*cell.outputs.udp));
+    outputs.push_back("udp " + cell.outputs.udp->host + " port " + std::to_string(cell.outputs.udp->port));
+  }
+  if (!cell.outputs.jsonl.empty()) {
+    monitor.add(std::make_unique<JsonLines>(cell.outputs.jsonl, monitor.names()));
+    outputs.push_back(cell.outputs.jsonl.string());
+  }
+  Teller teller(cell.outputs.terminal, monitor.names());
+  ask_before_the_end();
+  const double begin_s = sensors::clock_now_s();
+  monitor.start();
+  monitor::CellAnswer answer;
+  while (!stop_is_asked() && !(options.seconds && sensors::clock_now_s() - begin_s >= *options.seconds)) {
+    (void)sensors::wait_until(options.seconds ? begin_s + *options.seconds : begin_s + 1e9, kLook_s);
+    for (const monitor::Event& event : monitor.events()) {
+      teller.event(event, begin_s);
+    }
+    if (monitor.newest(answer)) {
+      teller.status(answer, begin_s);
+    }
+  }
+  monitor.stop();
+  for (const monitor::Event& event : monitor.events()) {
+    teller.event(event, begin_s);
+  }
+  teller.end();
+  std::FILE* const out = cell.outputs.jsonl.filename() == "-" ? stderr : stdout;
+  (void)std::fputs(summary(monitor, outputs, teller.stops()).c_str(), out);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App& command = *app.add_subcommand("run", "distances of a robot cell, live: cameras and joints in, answers out");
+  command.add_option("CELL", options->cell, "the cell file (depthgrid cell new writes one)")->required();
+  command.add_option("--seconds", options->seconds, "ends after this many seconds (default: Ctrl-C ends it)");
+  command.footer(
+      "Reads the cell file, opens its cameras and joints, and answers at a fixed rate how far the robot's links are "
+      "from what\n"
+      "is not known free, whatever fails meanwhile; then it says why. Ctrl-C ends it with a summary. docs/run.md says "
+      "more.");
+  command.callback([options] { run_cell(*options); });
+}
+
+}  // namespace depthgrid::program

@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+
+#include "depthgrid/cell/cell_file.hpp"
+#include "program/command.hpp"
+
+namespace depthgrid::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// A recording of two cameras, 0.1 s long, again and again.
+std::string recorded_cell() {
+  return R"(name: wall
+smallest_obstacle_m: 0
+cameras:
+  - {name: left, source: recording, recording: ., repeat: true, sensor: ideal}
+  - {name: right, source: recording, recording: ., repeat: true, sensor: ideal}
+space: {low_m: [-0.5, -0.5, 0.5], high_m: [0.9, 0.5, 1.9]}
+policies: {unobserved: ignored, outside: ignored, robot_pockets: obstacle}
+v_max_m_s: 0
+memory: none
+ask: {rate_hz: 100, points: [{name: hand, at_m: [0.2, 0, 1.2], radius_m: 0.05}], rho_m: 0.3}
+outputs: {jsonl: answers.jsonl}
+)";
+}
+
+TEST(CellCommand, ShowsEveryValueWithItsOrigin) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  const CommandResult result = run_command("cell show cell.yaml", folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("ask.rho_m +0.3 m +line 10\n"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("ages.image_s +0.5 s +default\n"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("cameras.0..margins.lateral_px +1 px +model ideal\n"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("cameras.1..intrinsics +64 x 48, fx 60, fy 60 px +[.]\n"));
+}
+
+TEST(CellCommand, ChecksEachSourceOnce) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  const CommandResult result = run_command("cell check cell.yaml", folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("left: recording . (left), 64 x 48 pixels, image of "));
+  EXPECT_THAT(result.out, HasSubstr("100.0 % of its pixels have a reading"));
+  EXPECT_THAT(result.out, HasSubstr("implausible: cell.yaml:4:5: cameras[0]: nothing says how well the camera's pose"));
+}
+
+TEST(CellCommand, ACheckThatFailsSaysWhatAndGoesOn) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  std::filesystem::remove(folder / "left_005.png");
+  std::filesystem::remove(folder / "left_006.png");
+  const CommandResult result = run_command("cell check cell.yaml", folder);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("failed: left: opened, and then: .*left_00"));
+  EXPECT_THAT(result.out, HasSubstr("right: recording"));
+  EXPECT_THAT(result.err, HasSubstr("depthgrid: 1 of 2 sources failed, the first: left"));
+}
+
+TEST(CellCommand, NewWritesOneAndNothingOver) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(run_command("cell new cell.yaml", folder).exit_code, 0);
+  EXPECT_EQ(read_bytes(folder / "cell.yaml"), cell::example_cell());
+  (void)folder.write("cell.yaml", "mine");
+  const CommandResult again = run_command("cell new cell.yaml", folder);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("cell.yaml: is there already, and is not written over: choose another name"));
+  EXPECT_EQ(read_bytes(folder / "cell.yaml"), "mine");
+  EXPECT_THAT(run_command("cell new nowhere/cell.yaml", folder).err, HasSubstr("is its folder there?"));
+}
+
+TEST(CellCommand, ASourceThatIsNotBuiltInIsTold) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run_command("cell new cell.yaml", folder).exit_code, 0);
+  edit(folder, "cell.yaml", "urdf: panda.urdf", "urdf: kuka_lwr4");
+  edit(folder, "cell.yaml", "tool: panda_hand", "tool: lwr_7_link");
+  const CommandResult result = run_command("run cell.yaml --seconds 1", folder);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(
+      result.err,
+      HasSubstr("cell.yaml:13:5: cameras[0]: source: realsense is not part of this build: recording, simulated"));
+}
+
+TEST(RunCommand, AnswersARecordingAndSumsUp) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  const CommandResult result = run_command("run cell.yaml --seconds 1.5", folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("1[.][5-9] s, [0-9]+ answers, "));
+  EXPECT_THAT(result.out, HasSubstr("from exposure to answer   median "));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("\n  left: [0-9]+ images"));
+  EXPECT_THAT(result.err, ::testing::ContainsRegex("s  left: open: recording [.]\n"));
+  EXPECT_THAT(result.err, ::testing::ContainsRegex("s  (go  |stop) .* blind layer 0.000 m . left "));
+  const std::string lines = read_bytes(folder / "answers.jsonl");
+  EXPECT_THAT(lines, ::testing::StartsWith(R"({"sequence":)"));
+  EXPECT_TRUE(lines.find(R"("parts":[{"part":"hand","distance_m":0.)") != std::string::npos);
+  EXPECT_TRUE(lines.ends_with("}]}\n")) << "the last line is whole";
+  // The ball is within the box, whose border is 0.5 m away, and the wall is 0.75 m away: nothing within rho.
+  EXPECT_TRUE(lines.find(R"("state":"beyond_rho")") != std::string::npos);
+}
+
+TEST(RunCommand, CtrlCEndsItWithASummary) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  const CommandResult result = run_command("run cell.yaml", folder, "timeout --signal=INT 1 ");
+  EXPECT_EQ(result.exit_code, 124) << "timeout's own, when the command ended by itself after the signal";
+  EXPECT_THAT(result.out, HasSubstr(" answers, "));
+  EXPECT_THAT(result.err, Not(HasSubstr("stopped by SIGINT")));
+}
+
+TEST(RunCommand, BrokenFilesAndWordsAreOneLine) {
+  const TemporaryFolder folder;
+  (void)folder.write("cell.yaml", "name: a\ncamera: []\n");
+  const CommandResult broken = run_command("run cell.yaml", folder);
+  EXPECT_EQ(broken.exit_code, 1);
+  EXPECT_EQ(broken.err, "depthgrid: cell.yaml:2:1: unknown key 'camera' (did you mean 'cameras'?)\n");
+  EXPECT_EQ(run_command("run nowhere.yaml", folder).exit_code, 1);
+  EXPECT_EQ(run_command("run cell.yaml --seconds 0", folder).exit_code, 2);
+  EXPECT_EQ(run_command("run", folder).exit_code, 2);
+  EXPECT_EQ(run_command("cell", folder).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace depthgrid::test
