@@ -374,6 +374,28 @@ TEST(HoleRule, ReadsAndWritesByTheMeasurementRule) {
   EXPECT_EQ(lone_hole_m(0.505F), 0.0);
 }
 
+// Whatever the hole says; with least above most, which nobody states, it would be least.
+TEST(HoleRule, APixelsBoundsHold) {
+  HoleRule rule(small_camera(64, 48, 400), 0.001, {}, SensorMargin{0, 0, 0, 0}, 0.02);
+  constexpr std::size_t kPixel = 24 * 64 + 32;
+  std::vector<float> depth_m(64 * 48, 2.0F);
+  depth_m[kPixel] = 0.0F;
+  const auto says_m = [&](const HoleBounds& bounds) {
+    return *measured_depth_m(rule.fill(depth_view(depth_m, 64, 48), {&bounds, 1}), {}, 32, 24);
+  };
+  EXPECT_NEAR(says_m({kPixel, 0.5F, 4.0F}), 1.99, 1e-3) << "what the hole says";
+  EXPECT_EQ(says_m({kPixel, 0.5F, 1.25F}), 1.25F);
+  EXPECT_EQ(says_m({kPixel, 3.0F, 4.0F}), 3.0F);
+  std::vector<std::uint16_t> units(64 * 48, 2000);
+  units[kPixel] = 0;
+  const auto says_units = [&](const HoleBounds& bounds) {
+    return static_cast<const std::uint16_t*>(rule.fill(depth_view(units, 64, 48, 0.001), {&bounds, 1}).data)[kPixel];
+  };
+  EXPECT_NEAR(says_units({kPixel, 500, 65535}), 1990, 1) << "what the hole says";
+  EXPECT_EQ(says_units({kPixel, 500, 1250}), 1250);
+  EXPECT_EQ(says_units({kPixel, 3000, 65535}), 3000);
+}
+
 TEST(HoleRule, AnImageTakesNoMemory) {
   DEPTHGRID_REQUIRE_ALLOCATION_COUNT();
   HoleRule rule(small_camera(64, 48, 200), 0.001, {}, {}, 0.02);
