@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "world/draw.hpp"
 
@@ -29,6 +30,59 @@ double thinnest_m(const World& world) {
   return least_m;
 }
 
+/// How far a place is from everything at the first image, for all that clocks may err.
+double empty_at_first_m(const World& world, const Vector3d& at) {
+  return empty_around_m(world, {Capsule::point(at)}, world.exposures.front().mid_s);
+}
+
+/// Some worlds keep a small region in which nothing is at the first image, whatever cameras see of it then.
+void draw_empty_region(World& world) {
+  Random random(world.options.seed, 11);  // leaves the other draws as they were
+  if (world.exposures.empty() || !random.chance(0.2)) {
+    return;
+  }
+  constexpr int kTried = 20;
+  Vector3d best = Vector3d::Zero();
+  double best_m = 0;
+  for (int i = 0; i < kTried; ++i) {
+    const Vector3d at = random.in_box(world.box().low_world, world.box().high_world);
+    if (const double empty_m = empty_at_first_m(world, at); empty_m > best_m) {
+      best = at;
+      best_m = empty_m;
+    }
+  }
+  // The region is enlarged to whole blocks of four voxels.
+  const double half_m = best_m / std::sqrt(3.0) - 4 * world.memory->voxel_m - 0.01;
+  if (half_m < 0.05) {
+    return;
+  }
+  world.memory->low_world = best - Vector3d::Constant(half_m);
+  world.memory->high_world = best + Vector3d::Constant(half_m);
+  world.memory->start = memory::StartEmpty{};
+}
+
+/// In some worlds a ball is let go, of which the memory is told.
+void draw_release(World& world) {
+  Random random(world.options.seed, 12);
+  if (world.robot.empty() || !random.chance(0.5)) {
+    return;
+  }
+  const double speed_m_s = true_speed_m_s(world);
+  Solid ball;
+  ball.from_s = random.uniform(0.2, 0.8) * world.duration_s;
+  ball.a.path = random_path(random, world.box().low_world, world.box().high_world, random.uniform(0, 1) * speed_m_s,
+                            world.duration_s, {});
+  ball.b = ball.a;
+  ball.radius_m = std::max(least_radius_m(world), 0.5 * world.memory->thinnest_hidden_m) * random.uniform(1, 3);
+  double late_s = 0;
+  for (const CameraMargins& margins : world.settings.margins) {
+    late_s = std::max(late_s, margins.half_exposure_s + margins.time_uncertainty_s);
+  }
+  late_s += 0.001;
+  world.solids.push_back(ball);
+  world.release = Release{ball.at(ball.from_s), 0.001 + speed_m_s * late_s, ball.from_s - 0.05, ball.from_s + late_s};
+}
+
 }  // namespace
 
 void draw_memory(World& world) {
@@ -55,6 +109,8 @@ void draw_memory(World& world) {
       settings.start = memory::StartEmptyAroundRobot{robot, random.uniform(0.5, 1) * empty_m};
     }
   }
+  draw_empty_region(world);
+  draw_release(world);
 }
 
 }  // namespace depthgrid::world

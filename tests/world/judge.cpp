@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace depthgrid::world {
@@ -71,9 +72,10 @@ class Search {
   double& least_m_;
 };
 
-/// axis_at(time): a thing's; touches(link, time, blind): whether some of the thing is in the link's layer then.
+/// from_s: since when the thing is there. axis_at(time): a thing's; touches(link, time, blind): whether some of the
+/// thing is in the link's layer then.
 template <class AxisAt, class Touches>
-std::vector<Contact> contacts_of(std::span<const Look> looks, double blind_m, const AxisAt& axis_at,
+std::vector<Contact> contacts_of(std::span<const Look> looks, double blind_m, double from_s, const AxisAt& axis_at,
                                  const Touches& touches) {
   std::vector<Contact> contacts;
   contacts.reserve(kInstants * looks.size());
@@ -81,6 +83,9 @@ std::vector<Contact> contacts_of(std::span<const Look> looks, double blind_m, co
     const double layer_m = std::max(blind_m, look.blind_m);
     for (int i = 0; i < kInstants && layer_m > 0 && !look.robot.empty(); ++i) {
       const double time_s = look.from_s + (look.to_s - look.from_s) * i / (kInstants - 1);
+      if (time_s < from_s) {
+        continue;
+      }
       Contact contact{axis_at(time_s), {}, layer_m, look.sight ? &*look.sight : nullptr};
       contact.links.reserve(look.robot.size());
       std::copy_if(look.robot.begin(), look.robot.end(), std::back_inserter(contact.links), [&](const Capsule& link) {
@@ -101,7 +106,7 @@ void try_solid(const Solid& solid, const Capsule& asked, double time_s, double b
   Search search(
       asked,
       contacts_of(
-          looks, blind_m, [&solid](double at_s) { return solid.at(at_s); },
+          looks, blind_m, solid.from_s, [&solid](double at_s) { return solid.at(at_s); },
           [](const Capsule& link, const Capsule& thing, double layer_m) { return gap_m(link, thing) <= layer_m; }),
       least_m);
   for (int along = 0; along <= kAlong && !search.settled(gap); ++along) {
@@ -124,7 +129,7 @@ void try_wall(const HalfSpace& wall, const Capsule& asked, double answer_m, doub
               double& least_m) {
   Search search(asked,
                 contacts_of(
-                    looks, blind_m, [](double /*at_s*/) { return Capsule{}; },
+                    looks, blind_m, -std::numeric_limits<double>::infinity(), [](double /*at_s*/) { return Capsule{}; },
                     [&wall](const Capsule& link, const Capsule& /*thing*/, double layer_m) {
                       return gap_m(link, wall) <= layer_m;
                     }),

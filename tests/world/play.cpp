@@ -1,10 +1,12 @@
 #include "world/play.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <sstream>
 
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/robot_removal.hpp"
 #include "world/judge.hpp"
 #include "world/random.hpp"
@@ -48,7 +50,10 @@ std::vector<std::string> kinds_of(const World& world) {
          "things without readings");
   add_if(any_camera([](const TrueCamera& c) { return c.noise.constant_m + c.noise.quadratic_per_m > 0; }), "noise");
   add_if(world.memory && world.memory->thinnest_hidden_m > 0, "hidden things not thin");
-  add_if(world.memory && !std::holds_alternative<memory::StartUnknown>(world.memory->start), "empty around the robot");
+  add_if(world.memory && std::holds_alternative<memory::StartEmptyAroundRobot>(world.memory->start),
+         "empty around the robot");
+  add_if(world.memory && std::holds_alternative<memory::StartEmpty>(world.memory->start), "empty region");
+  add_if(world.release.has_value(), "something let go");
   add_if(any_camera([](const TrueCamera& c) { return c.moves; }), "cameras that move");
   add_if(any_camera([](const TrueCamera& c) { return c.lone_holes > 0 || c.round_holes > 0; }), "holes");
   return kinds;
@@ -85,6 +90,7 @@ class Player {
   void run() {
     int until_asked = random_.integer(1, 4);
     for (const Exposure& exposure : world_.exposures) {
+      say_release(exposure.arrival_s);
       show(exposure);
       if (--until_asked == 0) {
         ask(exposure.arrival_s + random_.uniform(0, 0.03));
@@ -101,6 +107,18 @@ class Player {
   std::vector<std::string> lines;
 
  private:
+  /// Before an image or an answer can know of it.
+  void say_release(double arrival_s) {
+    if (!world_.release || said_ || arrival_s < world_.release->said_s) {
+      return;
+    }
+    const std::array<Capsule, 1> at_world{world_.release->at_world};
+    if (!evaluator_.memory()->occupy(at_world, world_.release->distance_m, world_.release->time_s)) {
+      fail("the memory was not told what was let go");
+    }
+    said_ = true;
+  }
+
   void show(const Exposure& exposure) {
     const std::size_t k = exposure.camera;
     const CameraMargins& margins = world_.settings.margins[k];
@@ -231,6 +249,7 @@ class Player {
   std::vector<robot::RobotRemoval> removals_;
   std::vector<Look> looks_;       ///< of each camera's newest image
   std::vector<double> stamps_s_;  ///< likewise
+  bool said_ = false;             ///< what is let go
 };
 
 }  // namespace

@@ -93,6 +93,14 @@ struct Exposure {
   double arrival_s = 0;
 };
 
+/// Something that the robot lets go: it is there from then on, and the memory is told where.
+struct Release {
+  Capsule at_world;
+  double distance_m = 0;
+  double said_s = 0;  ///< before it is there
+  double time_s = 0;  ///< images that are stamped with this or later show it for all of their exposure
+};
+
 struct World {
   WorldOptions options;
   double duration_s = 0;
@@ -108,6 +116,7 @@ struct World {
   double robot_speed_m_s = 0;
   std::vector<Exposure> exposures;  ///< in the order in which they arrive
   std::optional<memory::MemorySettings> memory;
+  std::optional<Release> release;  ///< with a memory only
 
   [[nodiscard]] const views::BoxSpace& box() const { return std::get<views::BoxSpace>(settings.space); }
 };
