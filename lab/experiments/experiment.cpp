@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/sensor_models.hpp"
 #include "lab/experiments/experiment_report.hpp"
 
 namespace depthgrid::experiments {
@@ -14,6 +15,7 @@ void validate(const Options& options) {
   if (options.width_px && !(*options.width_px >= 32 && *options.width_px <= 1280 && *options.width_px % 4 == 0)) {
     fail("width is ", *options.width_px, " px, must be 32 ... 1280 and a multiple of 4");
   }
+  (void)sensor_or(options, "ideal");
 }
 
 int frames_or(const Options& options, int full, int quick) {
@@ -22,6 +24,10 @@ int frames_or(const Options& options, int full, int quick) {
 
 int width_or(const Options& options, int full, int quick) {
   return options.width_px.value_or(options.quick ? quick : full);
+}
+
+std::string_view sensor_or(const Options& options, std::string_view own) {
+  return sensor_model(options.sensor ? std::string_view(*options.sensor) : own).name;
 }
 
 const Experiment& experiment(std::string_view name) {

@@ -23,16 +23,22 @@ struct Options {
   std::uint64_t seed = 1;         ///< of everything random: person, sensors
   std::optional<int> frames{};    ///< instants of time; none: the experiment's own number
   std::optional<int> width_px{};  ///< of the depth images, which are 4:3; none: the experiment's own
-  std::string command_line{};     ///< as the user typed it, for the report
+  /// A sensor model of all cameras; none: the experiment's own. With it the search with what is declared for the sensor
+  /// and with a memory is measured, too.
+  std::optional<std::string> sensor{};
+  std::string command_line{};  ///< as the user typed it, for the report
   Progress progress = [](std::size_t, std::size_t) {};
 };
 
-/// Throws Error with value and rule: frames in 1 ... 100000, width in 32 ... 1280 and a multiple of 4.
+/// Throws Error with value and rule: frames in 1 ... 100000, width in 32 ... 1280 and a multiple of 4, a sensor that
+/// there is.
 void validate(const Options& options);
 
 /// `frames` and `width_px` as given, else the experiment's own numbers.
 [[nodiscard]] int frames_or(const Options& options, int full, int quick);
 [[nodiscard]] int width_or(const Options& options, int full, int quick);
+/// The model's own name, which lives as long as the program. Throws Error when there is no such sensor.
+[[nodiscard]] std::string_view sensor_or(const Options& options, std::string_view own);
 
 struct Experiment {
   std::string_view name;     ///< as on the command line

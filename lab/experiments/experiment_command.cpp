@@ -53,6 +53,9 @@ std::string command_line(const ExperimentOptions& options) {
   if (options.experiment.width_px) {
     line += " --width " + std::to_string(*options.experiment.width_px);
   }
+  if (options.experiment.sensor) {
+    line += " --sensor " + *options.experiment.sensor;
+  }
   return line;
 }
 
@@ -117,6 +120,9 @@ void add_experiment_command(CLI::App& app) {
   command->add_option("--frames", options->experiment.frames, "instants of time (default: the experiment's own)");
   command->add_option("--width", options->experiment.width_px,
                       "width of the depth images in pixels, which are 4:3 (default: the experiment's own)");
+  command->add_option("--sensor", options->experiment.sensor,
+                      "sensor model of the cameras, such as ideal, kinect_v1, realsense_d435 (default: the "
+                      "experiment's own); with it the search with what is declared for it and a memory is shown, too");
   command->footer("Example:\n  depthgrid-lab experiment shadow --quick --out shadow");
   command->callback([options] { run(*options); });
 }

@@ -9,6 +9,8 @@
 #include "lab/experiments/film/film.hpp"
 #include "lab/experiments/hidden_hand/hidden_hand.hpp"
 #include "lab/experiments/interference/interference.hpp"
+#include "lab/experiments/real_sensors/real_sensors.hpp"
+#include "lab/experiments/real_task/real_task.hpp"
 #include "lab/experiments/shadow/shadow.hpp"
 #include "lab/experiments/timing/timing.hpp"
 
@@ -27,6 +29,9 @@ constexpr std::array kExperiments{
                run_avoidance_experiment},
     Experiment{"film", "the same arm and a Kinect's noise, without and with what is declared: frames of a film",
                run_film},
+    Experiment{"real-sensors", "simulated Kinects and D4xx without and with what is declared: distances, clear links",
+               run_real_sensors},
+    Experiment{"real-task", "the hexagon with a simulated Kinect's noise: task time, contacts", run_real_task},
     Experiment{"timing", "the avoidance loop on the real clock: cycles a second, cycles in time", run_timing, "two"},
     Experiment{"campaign", "many random people beside an arm that avoids them: contacts, distances, task time",
                run_campaign, "all"},

@@ -52,6 +52,8 @@ TEST(Experiment, BrokenCommandsEndInOneLineAndLeaveNothing) {
            Broken{"experiment shadow --frames 0", 2, "frames is 0"},
            Broken{"experiment shadow --width 33", 2, "width is 33 px"},
            Broken{"experiment shadow --width wide", 2, "wide"},
+           Broken{"experiment shadow --sensor kinect", 2,
+                  "there is no sensor model 'kinect', known are ideal, kinect_v1"},
            Broken{"experiment shadow --seed -1", 2, "seed"},
            Broken{"experiment shadow --seed 99999999999999999999", 2, "whole number"},
            Broken{"experiment shadow --out ''", 2, "--out"},

@@ -16,10 +16,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// Those of the campaign, and the one that is made for real sensors.
-constexpr std::array kShown{Method::none,   Method::letter_one,     Method::letter_two,
-                            Method::search, Method::search_pockets, Method::search_memory};
-
 /// One sensor's runs.
 struct Comparison {
   std::string sensor;
@@ -204,29 +200,31 @@ void run_avoidance_experiment(const Options& options, ExperimentReport& report) 
   const robot::RobotModel model = robot::kuka_lwr4();
   const double duration_s = frames_or(options, 360, 240) / kFrameRate_hz;
   const int width_px = width_or(options, 320, 160);
-  const int kinect_px = width_or(options, 640, 160);
-  std::vector<Comparison> comparisons(2);
-  comparisons[0].sensor = "ideal";
-  comparisons[0].settings.width_px = width_px;
-  comparisons[1].sensor = "kinect_v1";
-  comparisons[1].settings = kinect_settings(kinect_px);
+  const int real_px = width_or(options, 640, 160);
+  std::vector<Comparison> comparisons;
+  for (const std::string_view own : {"ideal", "kinect_v1"}) {
+    const std::string_view sensor = sensor_or(options, own);
+    if (comparisons.empty() || comparisons.front().sensor != sensor) {
+      comparisons.push_back({std::string(sensor), sensor_settings(sensor, sensor == "ideal" ? width_px : real_px), {}});
+    }
+  }
   const AvoidanceMotion motion = carrying_person(avoidance_rig(2, width_px, "ideal"), duration_s, options.seed + 1);
   report.paragraph("A person carries a box to the arm and back (" + motion.name + ", " + report::fixed(duration_s) +
                    " s around the nearest time), while the end effector goes round a hexagon of radius 0.2 m at 0.40 "
                    "m/s. Two cameras of " +
                    std::to_string(width_px) + " x " + std::to_string(3 * width_px / 4) +
-                   " pixels (Kinect: " + std::to_string(kinect_px) + " x " + std::to_string(3 * kinect_px / 4) +
+                   " pixels (real sensors: " + std::to_string(real_px) + " x " + std::to_string(3 * real_px / 4) +
                    ") in the letter's arrangement, 30 Hz, images 20 ms late, commands every 2 ms.");
   const std::vector<Eigen::Vector3d> hexagon = experiments::hexagon(model).vertices_world;
   std::size_t done = 0;
-  const std::size_t total = comparisons.size() * kShown.size();
+  const std::size_t total = comparisons.size() * kAllMethods.size();
   for (Comparison& comparison : comparisons) {
     RunSettings run;
     run.common = comparison.settings;
     run.duration_s = duration_s;
     run.sample_every = 10;
     run.seed = options.seed;
-    for (const Method method : kShown) {
+    for (const Method method : kAllMethods) {
       comparison.runs[method] = run_avoidance(method, model, motion, run);
       options.progress(++done, total);
     }
@@ -241,7 +239,9 @@ void run_avoidance_experiment(const Options& options, ExperimentReport& report) 
                     " m (letter, 2 cameras), " + report::fixed(search.summary.smallest_person_m, 3) +
                     " m (search); vertices reached " + std::to_string(comparison.runs[Method::none].vertices) + ", " +
                     std::to_string(comparison.runs[Method::letter_one].vertices) + ", " +
-                    std::to_string(letter.vertices) + ", " + std::to_string(search.vertices) + ".");
+                    std::to_string(letter.vertices) + ", " + std::to_string(search.vertices) + "; search with memory " +
+                    report::fixed(comparison.runs[Method::search_memory].summary.smallest_person_m, 3) + " m, " +
+                    std::to_string(comparison.runs[Method::search_memory].vertices) + " vertices.");
   }
 }
 

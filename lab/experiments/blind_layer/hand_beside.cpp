@@ -6,6 +6,7 @@
 #include "depthgrid/robot/robot_removal.hpp"
 #include "depthgrid/search/search_evaluator.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
+#include "lab/experiments/stage/declared_rig.hpp"
 
 namespace depthgrid::experiments {
 
@@ -15,6 +16,7 @@ using simulation::WorkcellBody;
 namespace {
 
 constexpr double kRho_m = 0.6;
+constexpr double kHandVMax_m_s = 2.0;
 const Eigen::Vector3d kAway_world(-2.8, 2.8, 0.2);  // a corner of the room, far outside of what is asked
 
 WorkcellBody ball() {
@@ -87,6 +89,48 @@ views::Settings hand_settings(const Rig& rig) {
   settings.v_max_m_s = 0;  // the images are of one instant
   return settings;
 }
+
+namespace {
+
+search::EvaluatorOptions remembering(const views::Settings& settings) {
+  const auto& box = std::get<views::BoxSpace>(settings.space);
+  search::EvaluatorOptions options;
+  options.memory =
+      memory::MemorySettings{.low_world = box.low_world, .high_world = box.high_world, .start = memory::StartUnknown{}};
+  return options;
+}
+
+views::Settings declared_settings(const Rig& rig) {
+  views::Settings settings = hand_settings(rig);
+  settings.v_max_m_s = kHandVMax_m_s;
+  return settings;
+}
+
+}  // namespace
+
+RememberedScene::RememberedScene(HandBeside& scene, double padding_m)
+    : scene_(scene),
+      rig_(with_declarations(scene.rig())),
+      evaluator_(rig_, declared_settings(rig_), remembering(hand_settings(rig_))) {
+  for (const RigCamera& camera : rig_.cameras) {
+    removals_.emplace_back(camera.intrinsics, scene.arm().capsules(), robot::RemovalSettings{padding_m, true, true});
+  }
+}
+
+void RememberedScene::see(HandPlace place, std::optional<double> gap_m, int images) {
+  for (int image = 0; image < images; ++image, ++images_) {
+    scene_.take(place, gap_m, images_);
+    for (std::size_t k = 0; k < rig_.cameras.size(); ++k) {
+      Frame frame{depth_view(scene_.depth_m(k)), {}, static_cast<double>(images_) / 30};
+      frame.robot = removals_[k].find(scene_.arm().T_world_link(), rig_.cameras[k].T_world_camera, {}, &frame.depth);
+      if (const FrameUpdate update = evaluator_.update(k, frame); !update.taken()) {
+        fail("a simulated frame was not taken: ", update.reason);
+      }
+    }
+  }
+}
+
+Answer RememberedScene::distance(const Capsule& capsule_world) { return evaluator_.distance(capsule_world); }
 
 Answer removed_answer(const HandBeside& scene, double padding_m) {
   const Rig& rig = scene.rig();

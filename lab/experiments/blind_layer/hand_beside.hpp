@@ -7,6 +7,8 @@
 
 #include "depthgrid/core/answer.hpp"
 #include "depthgrid/core/rig.hpp"
+#include "depthgrid/robot/robot_removal.hpp"
+#include "depthgrid/search/search_evaluator.hpp"
 #include "depthgrid/simulation/simulated_sensors.hpp"
 #include "depthgrid/views/settings.hpp"
 #include "lab/experiments/stage/arm_at_work.hpp"
@@ -39,6 +41,8 @@ class HandBeside {
   /// Of a ball at this place: from the link's axis.
   [[nodiscard]] Eigen::Vector3d direction_world(HandPlace place) const;
 
+  [[nodiscard]] const simulation::Workcell& cell() const noexcept { return cell_; }
+  [[nodiscard]] std::size_t hand_body() const noexcept { return hand_; }
   /// One a camera, of the last take().
   [[nodiscard]] const DepthImage& depth_m(std::size_t camera) const { return measured_m_[camera]; }
   [[nodiscard]] bool shows_hand(std::size_t camera, std::size_t pixel) const {
@@ -59,6 +63,26 @@ class HandBeside {
 
 /// The search's settings for it: what nobody looks at and what is behind the robot is an obstacle, up to rho.
 [[nodiscard]] views::Settings hand_settings(const Rig& rig);
+
+/// The search with what is declared for the sensors and a memory that begins with nothing known, asked about links
+/// after some images at 30 Hz of a scene that stands; the sensor's margin is in the test.
+class RememberedScene {
+ public:
+  /// The scene must outlive it. Throws Error as the evaluator does.
+  RememberedScene(HandBeside& scene, double padding_m);
+
+  /// Further images with the ball there.
+  void see(HandPlace place, std::optional<double> gap_m, int images);
+  /// Of a capsule at the time of the newest images.
+  [[nodiscard]] Answer distance(const Capsule& capsule_world);
+
+ private:
+  HandBeside& scene_;
+  Rig rig_;
+  search::SearchEvaluator evaluator_;
+  std::vector<robot::RobotRemoval> removals_;
+  std::uint64_t images_ = 0;
+};
 
 /// What the search answers for the last link with the arm removed with this padding.
 [[nodiscard]] Answer removed_answer(const HandBeside& scene, double padding_m);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -21,9 +22,12 @@ using simulation::Motion;
 
 constexpr int kMaxCameras = 8;
 constexpr std::array kTimedMethods{EvaluationMethod::letter_hybrid, EvaluationMethod::letter,
-                                   EvaluationMethod::corrected, EvaluationMethod::search};
+                                   EvaluationMethod::corrected, EvaluationMethod::search,
+                                   EvaluationMethod::search_memory};  // the last where a sensor is given
 /// Timed evaluations in every frame: more of those that are over sooner.
-constexpr std::array kRepetitions{3, 3, 1, 20};
+constexpr std::array kRepetitions{3, 3, 1, 20, 20};
+constexpr int kCountedBefore = 15;  ///< images at 30 Hz that a memory sees before each instant
+constexpr double kCountedFrame_s = 1.0 / 30;
 constexpr double kSpacing = 0.1;  ///< of the gray area's samples, metres
 
 /// Points on the axes of the arm's capsules; the ball around each lies in the grown arm and touches its surface.
@@ -43,11 +47,17 @@ std::vector<SurfacePoint> surface_points(const ArmAtWork& arm, double padding_m)
 
 /// Everything that one number of cameras needs.
 struct Setup {
-  Setup(int cameras, int width_px, const StagedCell& stage)
-      : arrangement(simulation::arrangement(cameras, "ideal")),
-        images(with_width(arrangement.rig, width_px), stage, RobotPixels::behind_unknown, {}) {
+  Setup(int cameras, int width_px, const StagedCell& stage, const Options& options)
+      : arrangement(simulation::arrangement(cameras, sensor_or(options, "ideal"))),
+        images(with_width(arrangement.rig, width_px), stage, RobotPixels::behind_unknown, {.seed = options.seed}) {
     result.cameras = cameras;
+    if (options.sensor) {
+      thin.emplace(images.rig(), stage, RobotPixels::thin_layer, simulation::SensorGroupSettings{.seed = options.seed});
+    }
     for (const EvaluationMethod method : kTimedMethods) {
+      if (method == EvaluationMethod::search_memory && !thin) {
+        continue;
+      }
       methods.emplace_back(method, images.rig(), arrangement);
       result.methods.push_back({std::string(to_string(method)), 0, 0, Deviation(DistanceMethod::kRho), 0, 0});
     }
@@ -56,7 +66,12 @@ struct Setup {
   }
 
   simulation::Arrangement arrangement;
+  [[nodiscard]] const CameraImages& images_of(std::size_t method) const {
+    return method == kCountedMemory ? *thin : images;
+  }
+
   CameraImages images;
+  std::optional<CameraImages> thin;  ///< for the memory
   std::vector<DistanceMethod> methods;
   std::vector<std::vector<double>> evaluations_s;
   std::vector<std::vector<double>> updates_s;
@@ -104,7 +119,7 @@ void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth&
   CountedMethod& result = setup.result.methods[method];
   DistanceMethod& asked = setup.methods[method];
   double start_s = lab::processor_time_s();
-  asked.update(setup.images.frames());
+  asked.update(setup.images_of(method).frames());
   setup.updates_s[method].push_back(lab::processor_time_s() - start_s);
 
   const auto points_world = stage.arm().points_world();
@@ -112,7 +127,7 @@ void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth&
   asked.evaluate(points_world, answers);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     // What of the person lies in the padding of the arm no method can see.
-    if (truth.person_to_arm_m > setup.images.padding_m()) {
+    if (truth.person_to_arm_m > setup.images_of(method).padding_m()) {
       result.deviation.add(answers[i], truth.control[i].distance_m);
     } else {
       result.deviation.leave_out();
@@ -147,7 +162,7 @@ void ask(Setup& setup, std::size_t method, const StagedCell& stage, const Truth&
 std::vector<CameraCount> medians_of(std::vector<Setup>& setups) {
   std::vector<CameraCount> counts;
   for (Setup& setup : setups) {
-    for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
+    for (std::size_t method = 0; method < setup.methods.size(); ++method) {
       setup.result.methods[method].evaluation_s = report::quantile(std::move(setup.evaluations_s[method]), 0.5);
       setup.result.methods[method].update_s = report::quantile(std::move(setup.updates_s[method]), 0.5);
     }
@@ -190,17 +205,30 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
   const int frames = frames_or(options, 16, 8);
   std::vector<Setup> setups;
   for (int cameras = 1; cameras <= kMaxCameras; ++cameras) {
-    setups.emplace_back(cameras, width_px, stage);
+    setups.emplace_back(cameras, width_px, stage, options);
   }
   Truths truths(stage);
   std::mt19937_64 engine(options.seed);
   for (int frame = 0; frame < frames; ++frame) {
-    stage.move_to(stage.person().duration_s() * (frame + 0.5) / frames);
+    const double time_s = stage.person().duration_s() * (frame + 0.5) / frames;
+    for (int before = kCountedBefore; options.sensor && before > 0; --before) {
+      const double earlier_s = time_s - before * kCountedFrame_s;
+      stage.move_to(earlier_s);
+      for (Setup& setup : setups) {
+        const auto number = static_cast<std::uint64_t>((frame + 1) * 1000 + before);
+        setup.thin->take(stage, number, earlier_s);
+        setup.methods[kCountedMemory].update(setup.thin->frames());
+      }
+    }
+    stage.move_to(time_s);
     const Truth truth = truths.at(stage, setups.front().images.padding_m());
     for (Setup& setup : setups) {  // all of them in every frame: what slows the machine down slows them all
-      setup.images.take(stage, static_cast<std::uint64_t>(frame));
+      setup.images.take(stage, static_cast<std::uint64_t>(frame), time_s);
+      if (setup.thin) {
+        setup.thin->take(stage, static_cast<std::uint64_t>(frame), time_s);
+      }
       setup.result.gray.add(gray_area(stage, setup.images, setup.arrangement, kSpacing));
-      for (std::size_t method = 0; method < kTimedMethods.size(); ++method) {
+      for (std::size_t method = 0; method < setup.methods.size(); ++method) {
         ask(setup, method, stage, truth, engine);
       }
       options.progress(static_cast<std::size_t>(frame) * kMaxCameras + static_cast<std::size_t>(setup.result.cameras),

@@ -27,7 +27,7 @@ inline constexpr std::size_t kCountedHybrid = 0;  ///< letter, hybrid
 inline constexpr std::size_t kCountedLetter = 1;
 inline constexpr std::size_t kCountedCorrected = 2;
 inline constexpr std::size_t kCountedSearch = 3;
-inline constexpr std::size_t kCountedMethods = 4;
+inline constexpr std::size_t kCountedMemory = 4;  ///< where a sensor is given
 
 struct CameraCount {
   int cameras = 0;
@@ -46,7 +46,7 @@ struct LinearFit {
 };
 [[nodiscard]] LinearFit linear_fit(const std::vector<CameraCount>& counts, std::size_t method);
 
-/// One to eight cameras around the robot, ideal sensors. Throws Error.
+/// One to eight cameras around the robot. Throws Error.
 [[nodiscard]] std::vector<CameraCount> measure_camera_counts(const Options& options);
 
 void run_camera_count(const Options& options, ExperimentReport& report);

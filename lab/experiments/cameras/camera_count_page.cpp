@@ -21,7 +21,7 @@ report::Canvas draw(const std::vector<CameraCount>& counts) {
   report::Plot time{"time of an evaluation of nine points, two cameras = 1", "cameras", "ratio", false, false, {}};
   report::Plot left{"what is left", "cameras", "share (%)", false, false, {}};
   report::Series linear{"proportional to the cameras", {}, {}, false, true};
-  for (std::size_t method = 0; method < kCountedMethods; ++method) {
+  for (std::size_t method = 0; method < counts[0].methods.size(); ++method) {
     report::Series& series = time.series.emplace_back();
     series.label = counts[0].methods[method].label;
     for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -63,7 +63,7 @@ std::string time_table(const std::vector<CameraCount>& counts) {
   report::MarkdownTable table(head);
   for (std::size_t i = 0; i < counts.size(); ++i) {
     std::vector<std::string> row{std::to_string(counts[i].cameras)};
-    for (std::size_t method = 0; method < kCountedMethods; ++method) {
+    for (std::size_t method = 0; method < counts[0].methods.size(); ++method) {
       row.push_back(milliseconds(counts[i].methods[method].evaluation_s));
       row.push_back(report::fixed(time_ratio(counts, method, i), 2));
     }
@@ -127,6 +127,20 @@ void report_growth(const std::vector<CameraCount>& counts, ExperimentReport& rep
   report.headline("Points of the robot that touch a pocket, with one, two, ... cameras: " + pockets + ".");
 }
 
+/// With what is declared and a memory, which has seen half a second before each instant.
+std::string memory_table(const std::vector<CameraCount>& counts) {
+  report::MarkdownTable table({"cameras", "> 100 mm too near, search", "the same with memory",
+                               "> 10 mm too far, search", "with memory", "most, mm, with memory"});
+  for (const CameraCount& count : counts) {
+    const Deviation& search = count.methods[kCountedSearch].deviation;
+    const Deviation& memory = count.methods[kCountedMemory].deviation;
+    table.row({std::to_string(count.cameras), report::percent(search.false_obstacles()),
+               report::percent(memory.false_obstacles()), report::percent(search.overestimates()),
+               report::percent(memory.overestimates()), report::fixed(1000 * memory.largest_overestimate_m())});
+  }
+  return table.text();
+}
+
 void report_tables(const std::vector<CameraCount>& counts, ExperimentReport& report) {
   report.paragraph("Processor time of an evaluation of nine control points, new points every time:");
   report.paragraph(time_table(counts));
@@ -136,6 +150,9 @@ void report_tables(const std::vector<CameraCount>& counts, ExperimentReport& rep
   report.paragraph("Processor time to prepare the images of one instant, all cameras:");
   report.paragraph(preparation_table(counts));
   report.paragraph(left_table(counts));
+  if (counts.front().methods.size() > kCountedMemory) {
+    report.paragraph(memory_table(counts));
+  }
   report.paragraph(
       "*pockets*: points of the robot's surface (grown by the padding of its removal) that read less than 10 mm though "
       "nothing is within 100 mm. Instants at which the person is inside that padding are left out of the comparison: "
@@ -158,7 +175,7 @@ void report_figures(const std::vector<CameraCount>& counts, ExperimentReport& re
       figures["distances"] = method.deviation.json();
     }
   }
-  for (std::size_t method = 0; method < kCountedMethods; ++method) {
+  for (std::size_t method = 0; method < counts[0].methods.size(); ++method) {
     const LinearFit fit = linear_fit(counts, method);
     report.figures()["linear_fit"][counts[0].methods[method].label] = {
         {"offset_s", fit.offset_s}, {"slope_s_per_camera", fit.slope_s}, {"r_squared", fit.r_squared}};
@@ -170,8 +187,10 @@ void report_figures(const std::vector<CameraCount>& counts, ExperimentReport& re
 void run_camera_count(const Options& options, ExperimentReport& report) {
   report.paragraph(
       "One to eight cameras: the letter's first one; its two; from three on a circle around the robot. A person "
-      "reaches for the moving arm, sensors are ideal, the space behind the robot counts as unknown. The letter states "
-      "that its computations grow linearly with the number of cameras.");
+      "reaches for the moving arm, sensor: " +
+      std::string(sensor_or(options, "ideal")) +
+      ", the space behind the robot counts as unknown. The letter states that its computations grow linearly with the "
+      "number of cameras.");
   const std::vector<CameraCount> counts = measure_camera_counts(options);
   report_growth(counts, report);
   report.picture("cameras.png", draw(counts),

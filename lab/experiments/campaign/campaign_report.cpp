@@ -38,7 +38,7 @@ report::Canvas picture_of_distances(const CampaignState& state) {
   plot.title = "smallest true distance to the person, by motion";
   plot.x_label = "share of the motions with less";
   plot.y_label = "smallest distance (m)";
-  for (const Method method : kMethods) {
+  for (const Method method : methods_of(state.settings)) {
     report::Series series;
     series.label = title(method);
     series.markers = false;
@@ -76,13 +76,13 @@ report::Canvas picture_of_plate(const std::map<Method, PlateScene>& scenes) {
 }
 
 /// Seconds for one vertex with nobody there.
-std::map<Method, double> alone_s_per_vertex(const CampaignPlan& plan) {
+std::map<Method, double> alone_s_per_vertex(const CampaignPlan& plan, const CampaignState& state) {
   const robot::RobotModel model = robot::kuka_lwr4();
   RunSettings settings;
-  settings.common = plan.common;
   settings.duration_s = plan.duration_s;
   std::map<Method, double> result;
-  for (const Method method : kMethods) {
+  for (const Method method : methods_of(state.settings)) {
+    settings.common = settings_of(plan, method);
     const RunResult run = run_avoidance(method, model, nobody(plan.duration_s), settings);
     result[method] = run.duration_s / run.summary.task_share;
   }
@@ -108,6 +108,13 @@ void say_what_was_done(const CampaignPlan& plan, const CampaignState& state, Exp
       report::fixed(plan.common.approach_stop_m, 2) + " m), with v_max = " + report::fixed(plan.common.v_max_m_s, 1) +
       " m/s. All that nobody sees is an obstacle to it; in the last row pockets of up to " +
       report::fixed(plan.common.ignored_pocket_m, 2) + " m right behind the robot are not (declared).");
+  if (plan.with_memory) {
+    report.paragraph("The search with memory alone has " + std::string(plan.with_memory->sensor) + " images of " +
+                     std::to_string(plan.with_memory->width_px) + " x " +
+                     std::to_string(3 * plan.with_memory->width_px / 4) + ", distances every " +
+                     report::fixed(1000 * plan.with_memory->period_s * plan.with_memory->evaluate_every) +
+                     " ms, and what is declared for that sensor.");
+  }
   const bool recordings = state.settings.value("recordings", false);
   report.paragraph(recordings ? "One motion in six is a recorded one (CMU motion capture, subject 02)."
                               : "Scripted motions only: no recordings were found in " + mocap_folder().string() + ".");
@@ -228,11 +235,11 @@ void report_plate(const CampaignPlan& plan, ExperimentReport& report) {
 
 void report_campaign(const CampaignPlan& plan, const CampaignState& state, ExperimentReport& report) {
   say_what_was_done(plan, state, report);
-  const std::map<Method, double> alone = alone_s_per_vertex(plan);
+  const std::map<Method, double> alone = alone_s_per_vertex(plan, state);
   report.figures()["settings"] = state.settings;
   std::map<Method, MethodTotals> sums;
   double slowest_alone = 0;
-  for (const Method method : kMethods) {
+  for (const Method method : methods_of(state.settings)) {
     sums[method] = totals(state, method, plan.duration_s);
     slowest_alone = std::max(slowest_alone, alone.at(method) / alone.at(Method::none));
   }
@@ -240,13 +247,18 @@ void report_campaign(const CampaignPlan& plan, const CampaignState& state, Exper
   report.figures()["claims"]["slowest_with_nobody_beside_no_avoidance"] = slowest_alone;
   report.headline("Task time with nobody there, slowest method beside no avoidance: " +
                   report::fixed(slowest_alone, 3) + " (wanted: at most " + report::fixed(kSameTime, 2) + ").");
-  for (const Method method : {Method::search, Method::search_pockets}) {
+  for (const Method method : methods_of(state.settings)) {
+    if (!is_search(method)) {
+      continue;
+    }
     report_contacts_caused(state, method, sums.at(method), report);
     report_time(state, method, report);
   }
   report.picture("smallest-distances.png", picture_of_distances(state),
                  "Each motion's smallest true distance, sorted; distances above 1 m are drawn there.");
-  report_plate(plan, report);
+  if (!plan.with_memory) {
+    report_plate(plan, report);
+  }
 }
 
 }  // namespace depthgrid::experiments

@@ -111,6 +111,11 @@ std::string differences(const ordered_json& has, const ordered_json& wanted) {
 
 }  // namespace
 
+std::vector<Method> methods_of(const ordered_json& settings) {
+  return settings.contains("with_memory") ? std::vector<Method>{Method::none, Method::letter_two, Method::search_memory}
+                                          : std::vector<Method>(kMethods.begin(), kMethods.end());
+}
+
 void write_campaign_state(const fs::path& file, const CampaignState& state) {
   ordered_json json;
   json["campaign"] = state.settings;
@@ -144,8 +149,9 @@ CampaignState read_campaign_state(const fs::path& file, const ordered_json& sett
   try {
     for (const ordered_json& entry : json["motions"]) {
       MotionOutcome outcome{entry.at("name"), entry.at("v_max_m_s"), {}};
-      for (const Method method : kMethods) {
-        outcome.runs[method] = summary_from(entry.at("runs").at(std::string(key(method))));
+      const ordered_json& runs = entry.at("runs");
+      for (const Method method : methods_of(settings)) {
+        outcome.runs[method] = summary_from(runs.at(std::string(key(method))));
       }
       state.motions[entry.at("number")] = std::move(outcome);
     }

@@ -24,6 +24,9 @@ struct CampaignState {
   std::map<int, MotionOutcome> motions;  ///< by number
 };
 
+/// Those that every motion has with these settings.
+[[nodiscard]] std::vector<Method> methods_of(const nlohmann::ordered_json& settings);
+
 /// The file is written whole or not at all. Throws Error that names it.
 void write_campaign_state(const std::filesystem::path& file, const CampaignState& state);
 

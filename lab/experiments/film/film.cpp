@@ -132,7 +132,7 @@ void run_film(const Options& options, ExperimentReport& report) {
   const robot::RobotModel model = robot::kuka_lwr4();
   const double duration_s = frames_or(options, 360, 60) / kFrameRate_hz;
   RunSettings run;
-  run.common = kinect_settings(width_or(options, 640, 160));
+  run.common = sensor_settings(sensor_or(options, "kinect_v1"), width_or(options, 640, 160));
   run.duration_s = duration_s;
   run.seed = options.seed;
   const AvoidanceMotion motion =

@@ -18,11 +18,11 @@ using simulation::Motion;
 
 constexpr std::size_t kPointBeforeHand = 4;  ///< the control point behind which the hand comes, in the arm's middle
 
-const std::vector<Candidate>& hand_candidates() {
+std::vector<Candidate> hand_candidates(const Options& options) {
   constexpr auto kBackground = RobotPixels::background;
   const std::vector<std::size_t> one{kFirstCamera};
   const std::vector<std::size_t> two{kFirstCamera, kOppositeCamera};
-  static const std::vector<Candidate> all{
+  std::vector<Candidate> all{
       {"letter, 1 camera, robot = background", EvaluationMethod::letter, one, kBackground},
       {"letter, 2 cameras, robot = background", EvaluationMethod::letter, two, kBackground},
       {"search, 1 camera, robot = background", EvaluationMethod::search, one, kBackground},
@@ -34,6 +34,11 @@ const std::vector<Candidate>& hand_candidates() {
       {"corrected, 2 cameras", EvaluationMethod::corrected, two},
       {"search, 2 cameras", EvaluationMethod::search, two},
   };
+  if (options.sensor) {
+    constexpr auto kThin = RobotPixels::thin_layer;
+    all.push_back({"search with memory, 1 camera", EvaluationMethod::search_memory, one, kThin});
+    all.push_back({"search with memory, 2 cameras", EvaluationMethod::search_memory, two, kThin});
+  }
   return all;
 }
 
@@ -44,6 +49,7 @@ constexpr std::size_t kHandLetterOne = 4;
 constexpr std::size_t kHandSearchOne = 6;
 constexpr std::size_t kHandLetterTwo = 7;
 constexpr std::size_t kHandSearchTwo = 9;
+constexpr std::size_t kHandMemoryTwo = 11;  ///< where a sensor is given
 
 /// Around the standing arm.
 simulation::PersonStage stage_behind(const Eigen::Vector3d& robot_world, const Eigen::Vector3d& camera_world) {
@@ -60,7 +66,8 @@ void draw_hidden_hand(const std::vector<Instant>& instants, StagedCell& stage, M
     return a.person_to_arm_m < b.person_to_arm_m;
   });
   stage.move_person_to(nearest->time_s);
-  const Instant instant = comparison.at(stage, nearest->time_s, 0);
+  comparison.retake(stage, *nearest);
+  const Instant& instant = *nearest;
   const CameraImages& images = comparison.images(RobotPixels::behind_unknown);
   const auto tile = [&](const char* title, std::size_t camera, std::size_t candidate) {
     return answer_tile(title, images, camera, instant, candidate);
@@ -72,6 +79,9 @@ void draw_hidden_hand(const std::vector<Instant>& instants, StagedCell& stage, M
   plot.series.push_back(point_answers(instants, kHandSearchOne, kPointBeforeHand, "search, 1 camera"));
   plot.series.push_back(point_answers(instants, kHandLetterTwo, kPointBeforeHand, "letter, 2 cameras"));
   plot.series.push_back(point_answers(instants, kHandSearchTwo, kPointBeforeHand, "search, 2 cameras"));
+  if (comparison.remembers()) {
+    plot.series.push_back(point_answers(instants, kHandMemoryTwo, kPointBeforeHand, "search with memory, 2 cameras"));
+  }
   report.picture(
       "hidden-hand.png",
       draw_comparison({tile("camera 1: letter, it alone *", kFirstCamera, kHandLetterBlind),
@@ -86,12 +96,12 @@ void draw_hidden_hand(const std::vector<Instant>& instants, StagedCell& stage, M
 }  // namespace
 
 GroupedDeviations measure_hidden_hand(const Options& options, ExperimentReport* pictures) {
-  const simulation::Arrangement arrangement = simulation::letter_arrangement("ideal");
+  const simulation::Arrangement arrangement = simulation::letter_arrangement(sensor_or(options, "ideal"));
   const Rig rig = with_width(arrangement.rig, width_or(options, 640, 320));
   const Eigen::Vector3d before_hand_world = ArmAtWork().points_world()[kPointBeforeHand];
   StagedCell stage(Motion::hand_behind_robot,
                    stage_behind(before_hand_world, rig.cameras.front().T_world_camera.translation()), options.seed);
-  MethodComparison comparison(stage, rig, arrangement, hand_candidates(), {});
+  MethodComparison comparison(stage, rig, arrangement, hand_candidates(options), {.seed = options.seed});
   GroupedInstants measured = measure_groups(
       stage, comparison, {0, stage.person().duration_s(), frames_or(options, 100, 40)}, &StagedCell::move_person_to,
       [](const Instant& instant) { return instant.person_to_arm_m < kHandNear; }, options.progress);
@@ -104,8 +114,9 @@ GroupedDeviations measure_hidden_hand(const Options& options, ExperimentReport* 
 void run_hidden_hand(const Options& options, ExperimentReport& report) {
   report.paragraph(
       "The arm stands. A person beyond it brings a hand to where the arm hides it from camera 1, as in Figs. 9 and 13 "
-      "of the letter. The second camera stands opposite the first. Sensors are ideal. Distances from nine points on "
-      "the arm's axis up to 0.4 m, beside the real ones.");
+      "of the letter. The second camera stands opposite the first. Sensor: " +
+      std::string(sensor_or(options, "ideal")) +
+      ". Distances from nine points on the arm's axis up to 0.4 m, beside the real ones.");
   const GroupedDeviations figures = measure_hidden_hand(options, &report);
   const auto too_far = [&](std::size_t candidate) {
     const Deviation& deviation = figures.chosen[candidate].deviation;
@@ -127,6 +138,13 @@ void run_hidden_hand(const Options& options, ExperimentReport& report) {
       report::percent(figures.otherwise[kHandSearchOne].deviation.false_obstacles()) +
       " of the points while nobody is near, with two cameras at " +
       report::percent(figures.otherwise[kHandSearchTwo].deviation.false_obstacles()) + ".");
+  if (options.sensor) {
+    report.headline("With what is declared for the sensor and a memory it has one at " +
+                    report::percent(figures.otherwise[kHandMemoryTwo].deviation.false_obstacles()) +
+                    " with two cameras, at " +
+                    report::percent(figures.chosen[kHandMemoryTwo].deviation.false_obstacles()) +
+                    " while the hand is near, where it is too far in " + too_far(kHandMemoryTwo) + ".");
+  }
   report_groups(figures,
                 "While the person is nearer than " + report::fixed(kHandNear, 2) + " m to the arm:", "hand_near",
                 report);

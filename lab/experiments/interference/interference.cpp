@@ -18,17 +18,21 @@ namespace {
 
 using simulation::Motion;
 
-constexpr const char* kSensor = "kinect_v1";
 // Places in interference_candidates().
 constexpr std::size_t kLetter = 0;
 constexpr std::size_t kSearchCandidate = 2;
+constexpr std::size_t kMemoryCandidate = 3;  ///< where a sensor is given
 
 /// The robot's pixels count as background, so that its own shadows do not cover what the noise does.
-std::vector<Candidate> interference_candidates() {
+std::vector<Candidate> interference_candidates(const Options& options) {
   constexpr auto kBackground = RobotPixels::background;
-  return {{"letter", EvaluationMethod::letter, {0, 1}, kBackground},
-          {"corrected", EvaluationMethod::corrected, {0, 1}, kBackground},
-          {"search", EvaluationMethod::search, {0, 1}, kBackground}};
+  std::vector<Candidate> all{{"letter", EvaluationMethod::letter, {0, 1}, kBackground},
+                             {"corrected", EvaluationMethod::corrected, {0, 1}, kBackground},
+                             {"search", EvaluationMethod::search, {0, 1}, kBackground}};
+  if (options.sensor) {
+    all.push_back({"search with memory", EvaluationMethod::search_memory, {0, 1}, kBackground});
+  }
+  return all;
 }
 
 struct Setting {
@@ -87,14 +91,17 @@ void count_answers(CaseRun& run, int frames) {
 }
 
 CaseRun run_case(const Setting& setting, const simulation::Arrangement& arrangement, const Rig& rig, int frames,
-                 std::uint64_t seed, const std::function<void(int)>& done) {
-  StagedCell stage(Motion::reach, stage_around_the_wrist(), seed);
-  MethodComparison comparison(stage, rig, arrangement, interference_candidates(), noise(setting, seed));
+                 const Options& options, const std::function<void(int)>& done) {
+  StagedCell stage(Motion::reach, stage_around_the_wrist(), options.seed);
+  MethodComparison comparison(stage, rig, arrangement, interference_candidates(options), noise(setting, options.seed));
+  const auto time_of = [&](int frame) { return stage.person().duration_s() * (frame + 0.5) / frames; };
+  FramesBetween between(stage, comparison, &StagedCell::move_to, time_of(0));
   CaseRun run;
   run.figures.label = setting.label;
   run.figures.methods = empty_rows(comparison.candidates());
   for (int frame = 0; frame < frames; ++frame) {
-    const double time_s = stage.person().duration_s() * (frame + 0.5) / frames;
+    const double time_s = time_of(frame);
+    between.play_until(time_s);
     stage.move_to(time_s);
     run.instants.push_back(comparison.at(stage, time_s, static_cast<std::uint64_t>(frame)));
     const CameraImages& images = comparison.images(RobotPixels::background);
@@ -114,29 +121,36 @@ report::Canvas draw(const std::vector<CaseRun>& runs, const RigCamera& camera) {
   std::vector<AnswerTile> tiles;
   report::Plot letter{"letter: median distance of the nine points, both cameras", "time (s)", "m", false, false, {}};
   report::Plot search{"search: the same", "time (s)", "m", false, false, {}};
+  report::Plot memory{"search with memory: the same", "time (s)", "m", false, false, {}};
   letter.series.push_back(median_truth(runs.front().instants, DistanceMethod::kRho));
   search.series.push_back(letter.series.front());
+  memory.series.push_back(letter.series.front());
+  const bool remembers = runs.front().figures.methods.size() > kMemoryCandidate;
   for (std::size_t s = 0; s < runs.size(); ++s) {
     const InterferenceCase& figures = runs[s].figures;
     tiles.push_back({std::string(kSettings[s].title) + ": " + report::percent(figures.invalid_share[0]) + " invalid",
                      &camera, &runs[s].shown, nullptr, nullptr});
     letter.series.push_back(median_answers(runs[s].instants, kLetter, figures.label));
     search.series.push_back(median_answers(runs[s].instants, kSearchCandidate, figures.label));
+    if (remembers) {
+      memory.series.push_back(median_answers(runs[s].instants, kMemoryCandidate, figures.label));
+    }
   }
-  return draw_comparison(tiles, {letter, search});
+  return draw_comparison(
+      tiles, remembers ? std::vector<report::Plot>{letter, search, memory} : std::vector<report::Plot>{letter, search});
 }
 
 }  // namespace
 
 std::vector<InterferenceCase> measure_interference(const Options& options, ExperimentReport* pictures) {
-  simulation::Arrangement arrangement = simulation::arrangement(8, kSensor);
+  simulation::Arrangement arrangement = simulation::arrangement(8, sensor_or(options, "kinect_v1"));
   arrangement.rig.cameras.resize(2);  // neighbours: the others do not light this space
   const Rig rig = with_width(arrangement.rig, width_or(options, 640, 320));
   const int frames = frames_or(options, 30, 8);
   std::vector<CaseRun> runs;
   for (const Setting& setting : kSettings) {
     const std::size_t before = runs.size();
-    runs.push_back(run_case(setting, arrangement, rig, frames, options.seed, [&](int done) {
+    runs.push_back(run_case(setting, arrangement, rig, frames, options, [&](int done) {
       options.progress(before * static_cast<std::size_t>(frames) + static_cast<std::size_t>(done),
                        kSettings.size() * static_cast<std::size_t>(frames));
     }));
@@ -157,7 +171,8 @@ std::vector<InterferenceCase> measure_interference(const Options& options, Exper
 
 void run_interference(const Options& options, ExperimentReport& report) {
   report.paragraph(
-      "Two Kinects, 45 degrees apart around the robot, look at a person who reaches for it, as in Fig. 14 of the "
+      "Two cameras (" + std::string(sensor_or(options, "kinect_v1")) +
+      "), 45 degrees apart around the robot, look at a person who reaches for it, as in Fig. 14 of the "
       "letter. **What is lost is assumed, not found**: of the pixels that the other Kinect lights too 3.57 % in spots "
       "of 5 pixels, 0.28 % when one of the two vibrates (after Maimone and Fuchs, VR 2012). Cameras that face each "
       "other light few surfaces in common and would show little of it.");
@@ -177,7 +192,8 @@ void run_interference(const Options& options, ExperimentReport& report) {
     return text + " mm";
   };
   report.headline("Half of the letter's distances then are more than " + medians(kLetter) +
-                  " too near, half of the search's more than " + medians(kSearchCandidate) + ".");
+                  " too near, half of the search's more than " + medians(kSearchCandidate) +
+                  (options.sensor ? ", of the search's with memory more than " + medians(kMemoryCandidate) : "") + ".");
   report::MarkdownTable table({"Kinects", "without measurement, camera 1", "camera 2",
                                "free nothing with the lateral margin, camera 1", "camera 2",
                                "nearest for the search: an unmeasured pixel's ray"});

@@ -1,5 +1,6 @@
 #include "lab/experiments/loop/avoidance_method.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include "depthgrid/avoidance/model_limits.hpp"
@@ -8,6 +9,7 @@
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/simulation/arrangement.hpp"
 #include "depthgrid/views/surveillance_radius.hpp"
+#include "lab/experiments/stage/declared_rig.hpp"
 
 namespace depthgrid::experiments {
 
@@ -32,13 +34,19 @@ std::string_view key(Method method) noexcept {
 
 int cameras_of(Method method) noexcept { return method == Method::none ? 0 : method == Method::letter_one ? 1 : 2; }
 
-AvoidanceSettings kinect_settings(int width_px) {
+AvoidanceSettings sensor_settings(std::string_view sensor, int width_px) {
   AvoidanceSettings settings;
-  settings.sensor = "kinect_v1";
+  settings.sensor = sensor_model(sensor).name;
   settings.width_px = width_px;
-  settings.removal_padding_m = 0.05;  // 3 sigma and half a step at 2.5 m
-  settings.memory_padding_m = 0.05;   // half the smallest obstacle, and as much for what is not known of holes
+  settings.memory_padding_m = thin_padding_m(sensor);
   settings.memory_margin_in_test = true;
+  if (settings.sensor == "ideal") {
+    return settings;
+  }
+  constexpr double kRobotsDistance = 2.5;  // metres
+  const Rig rig = simulation::letter_arrangement(sensor).rig;
+  const double margin_m = depth_margin_m(rig.cameras.front().margins->sensor, kRobotsDistance);
+  settings.removal_padding_m = std::ceil(100 * margin_m) / 100;
   return settings;
 }
 
@@ -75,16 +83,6 @@ views::Settings search_settings(const Rig& rig, const AvoidanceSettings& setting
                                               settings.frame_latency_s + 1 / kFrameRate_hz + settings.period_s,
                                               settings.known_layer_m);
   return result;
-}
-
-Rig with_declarations(Rig rig) {
-  for (RigCamera& camera : rig.cameras) {
-    const SensorModel& model = sensor_model(camera.sensor);
-    camera.margins->smallest_obstacle_m = model.smallest_obstacle_m;
-    camera.margins->second_view_x_m = model.second_view_x_m;
-    camera.margins->half_exposure_s = 0.008;
-  }
-  return rig;
 }
 
 AvoidanceSettings settings_for(Method method, const AvoidanceSettings& settings) {

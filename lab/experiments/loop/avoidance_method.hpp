@@ -22,10 +22,12 @@ enum class Method : std::uint8_t {
   letter_two,      ///< the letter's evaluation with both cameras
   search,          ///< the sound search with both cameras: all that nobody sees is an obstacle
   search_pockets,  ///< the same, with the declared policy that ignores pockets right behind the robot
-  search_memory,   ///< the search with a declared smallest obstacle and a memory of what was seen free
+  search_memory,   ///< the search with_declarations() and a memory of what was seen free
 };
 inline constexpr std::array kMethods{Method::none, Method::letter_one, Method::letter_two, Method::search,
                                      Method::search_pockets};
+inline constexpr std::array kAllMethods{Method::none,   Method::letter_one,     Method::letter_two,
+                                        Method::search, Method::search_pockets, Method::search_memory};
 [[nodiscard]] constexpr bool is_search(Method method) noexcept {
   return method == Method::search || method == Method::search_pockets || method == Method::search_memory;
 }
@@ -59,9 +61,10 @@ struct AvoidanceSettings {
   int evaluate_every = 2;    ///< periods between two evaluations, of every method
 };
 
-/// Both cameras simulated Kinects. In images of 320 pixels a hole of a pixel is as wide as the smallest obstacle at the
-/// robot's distance.
-[[nodiscard]] AvoidanceSettings kinect_settings(int width_px);
+/// Both cameras such sensors, the padding of the removal their margin at 2.5 m in whole centimetres. In images of 320
+/// pixels a hole of a pixel is as wide as a Kinect's smallest obstacle at the robot's distance. Throws Error when there
+/// is no such sensor.
+[[nodiscard]] AvoidanceSettings sensor_settings(std::string_view sensor, int width_px);
 
 /// Joints at the beginning, the flange before the base and above the floor; hexagon in the plane y = const around it.
 [[nodiscard]] control::JointVector start_rad();
@@ -72,10 +75,6 @@ struct AvoidanceSettings {
 
 [[nodiscard]] views::Settings search_settings(const Rig& rig, const AvoidanceSettings& settings,
                                               double ignored_pocket_m = 0);
-
-/// The rig with what Method::search_memory declares: the sensor's recommended smallest obstacle and its second view,
-/// and an exposure of 16 ms, since the simulated one takes no time.
-[[nodiscard]] Rig with_declarations(Rig rig);
 
 /// With the padding of the method.
 [[nodiscard]] AvoidanceSettings settings_for(Method method, const AvoidanceSettings& settings);

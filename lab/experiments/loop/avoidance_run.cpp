@@ -8,6 +8,7 @@
 #include "depthgrid/core/error.hpp"
 #include "lab/experiments/loop/contact_watch.hpp"
 #include "lab/experiments/loop/motion_count.hpp"
+#include "lab/experiments/stage/declared_rig.hpp"
 
 namespace depthgrid::experiments {
 

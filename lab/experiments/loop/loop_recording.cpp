@@ -6,8 +6,8 @@
 
 namespace depthgrid::experiments {
 
-LoopRecording::LoopRecording(const AvoidanceSettings& settings, double duration_s, std::uint64_t seed)
-    : rig_(avoidance_rig(2, settings.width_px, settings.sensor)), period_s_(settings.period_s) {
+LoopRecording::LoopRecording(const AvoidanceSettings& settings, double duration_s, std::uint64_t seed, Method method)
+    : method_(method), rig_(avoidance_rig(2, settings.width_px, settings.sensor)), period_s_(settings.period_s) {
   const AvoidanceMotion motion = carrying_person(rig_, duration_s, seed);
   motion_ = motion.name;
   RunSettings run;
@@ -26,7 +26,7 @@ LoopRecording::LoopRecording(const AvoidanceSettings& settings, double duration_
     }
     frames_.push_back(std::move(frame));
   };
-  const RunResult result = run_avoidance(Method::search, robot::kuka_lwr4(), motion, run);
+  const RunResult result = run_avoidance(method, robot::kuka_lwr4(), motion, run);
   for (const RunSample& sample : result.samples) {
     joints_.push_back(sample.q_rad);
   }

@@ -14,9 +14,11 @@ namespace depthgrid::experiments {
 /// Played forwards, backwards and so on, so that it has no end and nothing jumps.
 class LoopRecording {
  public:
-  /// Runs the search's loop in simulated time beside a person who carries a box. Throws Error as its parts do.
-  LoopRecording(const AvoidanceSettings& settings, double duration_s, std::uint64_t seed);
+  /// Runs the loop of a search in simulated time beside a person who carries a box. Throws Error as its parts do.
+  LoopRecording(const AvoidanceSettings& settings, double duration_s, std::uint64_t seed,
+                Method method = Method::search);
 
+  [[nodiscard]] Method method() const noexcept { return method_; }
   [[nodiscard]] const Rig& rig() const noexcept { return rig_; }
   [[nodiscard]] double period_s() const noexcept { return period_s_; }
   [[nodiscard]] const std::string& motion() const noexcept { return motion_; }
@@ -39,6 +41,7 @@ class LoopRecording {
   };
   [[nodiscard]] std::int64_t there_and_back(std::int64_t period) const noexcept;
 
+  Method method_;
   Rig rig_;
   double period_s_;
   std::string motion_;

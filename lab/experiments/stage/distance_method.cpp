@@ -5,6 +5,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/search/search_evaluator.hpp"
+#include "lab/experiments/stage/declared_rig.hpp"
 
 namespace depthgrid::experiments {
 
@@ -18,6 +19,8 @@ std::string_view to_string(EvaluationMethod method) noexcept {
       return "corrected";
     case EvaluationMethod::search:
       return "search";
+    case EvaluationMethod::search_memory:
+      return "search with memory";
   }
   return "";
 }
@@ -65,6 +68,14 @@ views::Settings search_settings(const Rig& rig, const simulation::Arrangement& a
 DistanceMethod::DistanceMethod(EvaluationMethod method, const Rig& rig, const simulation::Arrangement& arrangement) {
   if (method == EvaluationMethod::search) {
     evaluator_ = std::make_unique<search::SearchEvaluator>(rig, search_settings(rig, arrangement));
+  } else if (method == EvaluationMethod::search_memory) {
+    views::Settings settings = search_settings(with_declarations(rig), arrangement);
+    settings.v_max_m_s = kVMax;
+    search::EvaluatorOptions options;
+    options.memory = memory::MemorySettings{.low_world = arrangement.workspace_low_world,
+                                            .high_world = arrangement.workspace_high_world,
+                                            .start = memory::StartUnknown{}};
+    evaluator_ = std::make_unique<search::SearchEvaluator>(rig, settings, options);
   } else {
     evaluator_ = std::make_unique<grid::GridEvaluator>(rig, 0, cells(arrangement), grid_settings(method, rig));
   }
@@ -74,6 +85,7 @@ void DistanceMethod::update(std::span<const Frame> frames) {
   if (const FrameUpdate update = update_all(*evaluator_, frames); !update.taken()) {
     fail("a simulated frame was not taken: ", update.reason);
   }
+  time_s_ = frames.front().time_s;
 }
 
 void DistanceMethod::evaluate(std::span<const Eigen::Vector3d> points_world, std::span<Proximity> answers) {
@@ -83,8 +95,12 @@ void DistanceMethod::evaluate(std::span<const Eigen::Vector3d> points_world, std
   points_.resize(points_world.size());
   found_.resize(points_world.size());
   std::transform(points_world.begin(), points_world.end(), points_.begin(), Capsule::point);
-  evaluator_->evaluate(points_, 0, found_);  // the images are of one instant
+  evaluate(std::span<const Capsule>(points_), found_);
   std::transform(found_.begin(), found_.end(), answers.begin(), [](const Answer& answer) { return answer.nearest; });
+}
+
+void DistanceMethod::evaluate(std::span<const Capsule> capsules, std::span<Answer> answers) {
+  evaluator_->evaluate(capsules, time_s_, answers);  // the images are of one instant
 }
 
 }  // namespace depthgrid::experiments

@@ -6,6 +6,25 @@
 
 namespace depthgrid::experiments {
 
+namespace {
+
+constexpr double kFramePeriod_s = 1.0 / 30;
+constexpr double kSeenBefore_s = 1;
+constexpr std::uint64_t kPassedFrom = 1'000'000;  // the noise of images between instants is numbered from here
+
+}  // namespace
+
+FramesBetween::FramesBetween(StagedCell& stage, MethodComparison& comparison, Move move, double first_instant_s)
+    : stage_(stage), comparison_(comparison), move_(move), next_s_(first_instant_s - kSeenBefore_s) {}
+
+void FramesBetween::play_until(double instant_s) {
+  for (; comparison_.remembers() && next_s_ < instant_s - 0.5 * kFramePeriod_s; next_s_ += kFramePeriod_s) {
+    (stage_.*move_)(next_s_);
+    comparison_.pass(stage_, next_s_, kPassedFrom + passed_++);
+  }
+  next_s_ = instant_s + kFramePeriod_s;
+}
+
 std::vector<LabelledDeviation> empty_rows(const std::vector<Candidate>& candidates) {
   std::vector<LabelledDeviation> rows;
   rows.reserve(candidates.size());
@@ -30,8 +49,13 @@ GroupedInstants measure_groups(StagedCell& stage, MethodComparison& comparison, 
   GroupedDeviations& figures = result.figures;
   figures.chosen = empty_rows(comparison.candidates());
   figures.otherwise = figures.chosen;
+  const auto time_of = [&](int number) {
+    return series.begin_s + (series.end_s - series.begin_s) * (number + 0.5) / series.count;
+  };
+  FramesBetween between(stage, comparison, move, time_of(0));
   for (int number = 0; number < series.count; ++number) {
-    const double time_s = series.begin_s + (series.end_s - series.begin_s) * (number + 0.5) / series.count;
+    const double time_s = time_of(number);
+    between.play_until(time_s);
     (stage.*move)(time_s);
     const Instant& instant =
         result.instants.emplace_back(comparison.at(stage, time_s, static_cast<std::uint64_t>(number)));

@@ -32,11 +32,31 @@ struct InstantSeries {
   int count = 0;
 };
 
+/// What candidates that remember see between instants: images at 30 Hz, from a second before the first on. Where none
+/// remembers it does nothing.
+class FramesBetween {
+ public:
+  using Move = void (StagedCell::*)(double time_s);
+  /// All must outlive it. `move` takes the stage to a time.
+  FramesBetween(StagedCell& stage, MethodComparison& comparison, Move move, double first_instant_s);
+
+  /// Up to an instant at which the candidates are asked next. The stage does not stand there yet.
+  void play_until(double instant_s);
+
+ private:
+  StagedCell& stage_;
+  MethodComparison& comparison_;
+  Move move_;
+  double next_s_;
+  std::uint64_t passed_ = 0;
+};
+
 /// Rows without answers, and the answers of an instant to them; metres up to the letter's rho.
 [[nodiscard]] std::vector<LabelledDeviation> empty_rows(const std::vector<Candidate>& candidates);
 void add_answers(const Instant& instant, std::vector<LabelledDeviation>& rows);
 
 /// Takes the stage to one instant after the other with `move` (all of it, or the person alone) and asks all candidates.
+/// FramesBetween() are played.
 /// Throws Error as MethodComparison does.
 [[nodiscard]] GroupedInstants measure_groups(StagedCell& stage, MethodComparison& comparison,
                                              const InstantSeries& series, void (StagedCell::*move)(double time_s),

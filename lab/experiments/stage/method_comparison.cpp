@@ -40,9 +40,45 @@ MethodComparison::MethodComparison(const StagedCell& stage, const Rig& rig, cons
   }
 }
 
+bool MethodComparison::remembers() const noexcept {
+  return std::any_of(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& candidate) { return candidate.method == EvaluationMethod::search_memory; });
+}
+
+void MethodComparison::update(std::size_t candidate) {
+  const auto all = images_.at(candidates_[candidate].robot).frames();
+  frames_.clear();
+  for (const std::size_t camera : candidates_[candidate].cameras) {
+    frames_.push_back(all[camera]);
+  }
+  methods_[candidate].update(frames_);
+}
+
+void MethodComparison::pass(const StagedCell& stage, double time_s, std::uint64_t frame) {
+  std::vector<RobotPixels> taken;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& candidate = candidates_[i];
+    if (candidate.method != EvaluationMethod::search_memory) {
+      continue;
+    }
+    if (std::find(taken.begin(), taken.end(), candidate.robot) == taken.end()) {
+      images_.at(candidate.robot).take(stage, frame, time_s);
+      taken.push_back(candidate.robot);
+    }
+    update(i);
+  }
+}
+
+void MethodComparison::retake(const StagedCell& stage, const Instant& instant) {
+  for (auto& [robot, images] : images_) {
+    images.take(stage, instant.frame, instant.time_s);
+  }
+}
+
 Instant MethodComparison::at(const StagedCell& stage, double time_s, std::uint64_t frame) {
   Instant instant;
   instant.time_s = time_s;
+  instant.frame = frame;
   instant.points_world.assign(stage.arm().points_world().begin(), stage.arm().points_world().end());
   instant.truth = point_truth_.distances(stage.cell(), instant.points_world);
   cell_truth_.update(stage.cell());
@@ -50,15 +86,10 @@ Instant MethodComparison::at(const StagedCell& stage, double time_s, std::uint64
   instant.points_behind_person =
       points_behind_person(stage, images_.begin()->second.rig().cameras.front().T_world_camera.translation());
   for (auto& [robot, images] : images_) {
-    images.take(stage, frame);
+    images.take(stage, frame, time_s);
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const auto all = images_.at(candidates_[i].robot).frames();
-    frames_.clear();
-    for (const std::size_t camera : candidates_[i].cameras) {
-      frames_.push_back(all[camera]);
-    }
-    methods_[i].update(frames_);
+    update(i);
     methods_[i].evaluate(instant.points_world, instant.answers.emplace_back(instant.points_world.size()));
   }
   return instant;

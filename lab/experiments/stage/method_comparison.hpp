@@ -28,6 +28,7 @@ struct Candidate {
 /// Everything about one instant.
 struct Instant {
   double time_s = 0;
+  std::uint64_t frame = 0;                      ///< number of the noise
   std::vector<Eigen::Vector3d> points_world;    ///< the arm's control points
   std::vector<PointTruth::Nearest> truth;       ///< one a point
   std::vector<std::vector<Proximity>> answers;  ///< one row a candidate, one answer a point
@@ -46,6 +47,14 @@ class MethodComparison {
   MethodComparison(const StagedCell& stage, const Rig& rig, const simulation::Arrangement& arrangement,
                    std::vector<Candidate> candidates, const simulation::SensorGroupSettings& noise);
 
+  /// Whether a candidate remembers: then instants have to come in the order of their times, and what it sees between
+  /// them is taken by pass().
+  [[nodiscard]] bool remembers() const noexcept;
+  /// The stage stands as it is: images for those that remember, and no answers.
+  void pass(const StagedCell& stage, double time_s, std::uint64_t frame);
+  /// The images of an instant once more, for pictures. The stage stands as it did then.
+  void retake(const StagedCell& stage, const Instant& instant);
+
   /// The stage stands as it is; `frame` numbers the noise.
   [[nodiscard]] Instant at(const StagedCell& stage, double time_s, std::uint64_t frame);
 
@@ -54,6 +63,8 @@ class MethodComparison {
   [[nodiscard]] const std::vector<Candidate>& candidates() const noexcept { return candidates_; }
 
  private:
+  void update(std::size_t candidate);
+
   std::vector<Candidate> candidates_;
   std::vector<DistanceMethod> methods_;
   std::vector<Frame> frames_;  ///< of one candidate

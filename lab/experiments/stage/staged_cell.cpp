@@ -31,7 +31,19 @@ void StagedCell::move_to(double time_s) {
   move_person_to(time_s);
 }
 
+void StagedCell::send_person_away() {
+  nobody_ = true;
+  constexpr double kFar_m = 100;  // below the floor
+  for (Capsule& part : cell_.bodies[person_body_].capsules) {
+    part.a.z() -= kFar_m;
+    part.b.z() -= kFar_m;
+  }
+}
+
 void StagedCell::move_person_to(double time_s) {
+  if (nobody_) {
+    return;
+  }
   const simulation::PersonState state = person_.at(time_s);
   cell_.bodies[person_body_].capsules.assign(state.parts_world.begin(), state.parts_world.end());
 }

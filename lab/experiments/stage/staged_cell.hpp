@@ -21,6 +21,8 @@ class StagedCell {
 
   /// Takes everything to a time in seconds. The bodies of the cell are always the same.
   void move_to(double time_s);
+  /// From now on nobody is there: what moves the person does nothing.
+  void send_person_away();
   /// The arm stands, the person moves.
   void move_person_to(double time_s);
 
@@ -41,6 +43,7 @@ class StagedCell {
   simulation::Workcell cell_;
   std::size_t arm_body_;
   std::size_t person_body_;
+  bool nobody_ = false;
 };
 
 }  // namespace depthgrid::experiments

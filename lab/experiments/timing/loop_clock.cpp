@@ -16,6 +16,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/robot/kuka_lwr4.hpp"
+#include "lab/experiments/stage/declared_rig.hpp"
 #include "lab/measure/clocks.hpp"
 
 namespace depthgrid::experiments {
@@ -94,15 +95,19 @@ class RealTimePriority {
   bool granted_ = false;
 };
 
+constexpr std::size_t kSeenBefore = 15;  ///< frames that a memory sees before it is asked
+
 /// Robot, history, evaluator and loop of one run.
 struct Parts {
   Parts(const LoopRecording& recording, Method method, LoopParts which, const AvoidanceSettings& settings,
         const search::Budget& budget)
       : model(robot::kuka_lwr4()),
-        loop_settings(settings_of(method, which, model, settings)),
+        common(settings_for(method, settings)),
+        rig(method == Method::search_memory ? with_declarations(recording.rig()) : recording.rig()),
+        loop_settings(settings_of(method, which, model, common)),
         history(model.joints().size(), 256, 0.02, 0.0),
-        intake(recording.rig(), {model}, history, exposure_settings(settings)),
-        evaluator(make_evaluator(method, recording.rig(), settings, budget)),
+        intake(rig, {model}, history, exposure_settings(common)),
+        evaluator(make_evaluator(method, rig, common, budget)),
         timed(*evaluator),
         task(hexagon(model)),
         loop({model}, task, timed, loop_settings),
@@ -125,6 +130,8 @@ struct Parts {
   }
 
   robot::RobotModel model;
+  AvoidanceSettings common;
+  Rig rig;
   avoidance::LoopSettings loop_settings;
   robot::JointHistory history;
   robot::FrameIntake intake;
@@ -143,16 +150,22 @@ FreeRun run_free(const LoopRecording& recording, Method method, LoopParts parts,
   FreeRun result;
   Parts all(recording, method, parts, settings, budget);
   all.start();
+  const bool remembers = method == Method::search_memory;
+  const double again_s = remembers ? 2 / kFrameRate_hz : 1.0;
   double now_s = 0;
   for (int i = 0; i < snapshots; ++i) {
     const auto frame = static_cast<std::size_t>(i) * recording.frames() / static_cast<std::size_t>(snapshots);
     const std::int64_t period = recording.period_of(frame);
+    for (std::size_t before = std::min(frame, kSeenBefore); remembers && before > 0; --before) {
+      now_s += 2 / kFrameRate_hz;
+      all.take(recording.joints(recording.period_of(frame - before)), recording.seen(frame - before, now_s), now_s);
+    }
     for (int c = 0; c < cycles; ++c) {
       // The frame is used for the next two frame periods, as an image in the loop is, and is then taken anew: time only
       // goes forward.
       const std::int64_t later = c % 32 + 1;
       if (later == 1) {
-        now_s += 1.0;
+        now_s += again_s;
         all.take(recording.joints(period), recording.seen(frame, now_s), now_s);
       }
       const double at_s = now_s + recording.period_s() * static_cast<double>(later);
@@ -174,7 +187,7 @@ FreeRun run_free(const LoopRecording& recording, Method method, LoopParts parts,
 PacedRun run_paced(const LoopRecording& recording, LoopParts parts, const AvoidanceSettings& settings,
                    double duration_s, const search::Budget& budget, const std::function<void(double)>& progress) {
   PacedRun result;
-  Parts all(recording, Method::search, parts, settings, budget);
+  Parts all(recording, recording.method(), parts, settings, budget);
   // The first images are there before the first cycle.
   all.take(recording.joints(recording.period_of(0)), recording.seen(0, -recording.period_s()), -recording.period_s());
   all.start();

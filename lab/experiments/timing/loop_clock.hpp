@@ -18,7 +18,8 @@ struct FreeRun {
 };
 
 /// `cycles` for each of `snapshots` frames evenly spaced over the recording. The letter's evaluation for comparison:
-/// Method::letter_two with nine points. Throws Error when a cycle or an image fails.
+/// Method::letter_two with nine points. What remembers sees the half second before each frame first. Throws Error when
+/// a cycle or an image fails.
 [[nodiscard]] FreeRun run_free(const LoopRecording& recording, Method method, LoopParts parts,
                                const AvoidanceSettings& settings, int snapshots, int cycles,
                                const search::Budget& budget);

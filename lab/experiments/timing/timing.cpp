@@ -193,6 +193,11 @@ void report_free(const LoopRecording& recording, const AvoidanceSettings& settin
   add("search_nine_points_rho_04_10_mm", "the same with rho 0.40 m, resolution 10 mm", Method::search, nine, coarse,
       cycles);
   add("search_link_capsules", "search, six link capsules", Method::search, LoopParts::link_capsules, settings, cycles);
+  if (recording.method() == Method::search_memory) {
+    add("search_memory_nine_points", "search with memory, nine points", Method::search_memory, nine, settings, cycles);
+    add("search_memory_link_capsules", "search with memory, six link capsules", Method::search_memory,
+        LoopParts::link_capsules, settings, cycles);
+  }
   add("letter_two", "letter, nine points, rho 0.40 m, hybrid", Method::letter_two, nine, settings,
       std::max(1, cycles / 16));
   const double rate = figures["free"]["search_nine_points"]["cycles_a_second"];
@@ -209,20 +214,22 @@ void report_free(const LoopRecording& recording, const AvoidanceSettings& settin
 }  // namespace
 
 void run_timing(const Options& options, ExperimentReport& report) {
-  AvoidanceSettings settings;
-  settings.width_px = width_or(options, 640, 640);
+  const std::string_view sensor = sensor_or(options, "ideal");
+  AvoidanceSettings settings = sensor_settings(sensor, width_or(options, 640, 640));
   settings.resolution_m = 0.005;
   const double recorded_s = frames_or(options, 150, 45) / kFrameRate_hz;
   const double paced_s = options.quick ? 10 : 60;
   const search::Budget budget{.time_s = kBudgetShare * settings.period_s};
   const auto steps = static_cast<std::size_t>(2 * paced_s) + 3;
   options.progress(0, steps);
-  const LoopRecording recording(settings, recorded_s, options.seed);
+  const LoopRecording recording(settings, recorded_s, options.seed,
+                                options.sensor ? Method::search_memory : Method::search);
   options.progress(1, steps);
   report.paragraph(
       "A recording of the loop in simulated time (" + report::fixed(recorded_s, 1) + " s, " +
       std::to_string(recording.frames()) + " pairs of " + std::to_string(settings.width_px) + " x " +
-      std::to_string(3 * settings.width_px / 4) + " images, 16 bits, ideal sensor, person: " + recording.motion() +
+      std::to_string(3 * settings.width_px / 4) + " images, 16 bits, " + std::string(sensor) +
+      " sensor, person: " + recording.motion() +
       ") is played there and back: the arm stands where it stood, images come at 30 Hz, and robot removal, search "
       "(resolution 5 mm, rho " +
       report::fixed(search_settings(recording.rig(), settings).rho_m, 2) +

@@ -242,6 +242,24 @@ TEST(CampaignFile, GoesOnWhereItWasCutOff) {
   EXPECT_EQ(second.motions.at(0).name, "already done");
 }
 
+TEST(CampaignFile, WithARealSensorHoldsTheMemorysRunsBesideTheIdealOnes) {
+  CampaignPlan plan = small_campaign(1);
+  plan.duration_s = 0.3;
+  const nlohmann::ordered_json ideal = settings_of(plan, false);
+  plan.with_memory = sensor_settings("realsense_d435", 96);
+  const nlohmann::ordered_json settings = settings_of(plan, false);
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "state.json";
+  const CampaignState first = run(plan, file, read_campaign_state(file, settings));
+  const CampaignState read = read_campaign_state(file, settings);
+  ASSERT_EQ(read.motions.size(), 1U);
+  EXPECT_EQ(read.motions.at(0).runs.size(), 3U);
+  EXPECT_EQ(read.motions.at(0).runs.at(Method::search_memory).task_share,
+            first.motions.at(0).runs.at(Method::search_memory).task_share);
+  EXPECT_THAT(test::thrown_message([&] { (void)read_campaign_state(file, ideal); }),
+              HasSubstr("belongs to another campaign, with with_memory"));
+}
+
 TEST(CampaignFile, RefusesWhatDoesNotBelongToIt) {
   CampaignPlan plan = small_campaign(1);
   const test::TemporaryFolder folder;

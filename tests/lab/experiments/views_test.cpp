@@ -8,6 +8,7 @@
 #include "lab/experiments/cameras/camera_count.hpp"
 #include "lab/experiments/hidden_hand/hidden_hand.hpp"
 #include "lab/experiments/interference/interference.hpp"
+#include "lab/experiments/real_sensors/scene_play.hpp"
 #include "lab/experiments/shadow/shadow.hpp"
 #include "lab/experiments/stage/distance_method.hpp"
 
@@ -90,6 +91,29 @@ TEST(HiddenHand, OneCameraMissesItAndASecondFindsIt) {
   // The price of one camera: the robot's own shadow counts when nobody is near, too.
   EXPECT_GT(row(figures.otherwise, "search, 1 camera").false_obstacles(), 0.9);
   EXPECT_LT(row(figures.otherwise, "search, 2 cameras").false_obstacles(), 0.5);
+}
+
+TEST(HiddenHand, WithASensorTheMemoryIsShownToo) {
+  Options options = small(3);
+  options.sensor = "kinect_v1";
+  options.width_px = 64;
+  const Deviation memory = row(measure_hidden_hand(options, nullptr).otherwise, "search with memory, 2 cameras");
+  EXPECT_GT(memory.compared(), 0U);
+  EXPECT_EQ(memory.overestimates(), 0);
+}
+
+// In small images a hole says nothing, whatever is declared.
+TEST(RealSensors, WhatIsDeclaredLetsAnArmBeClearThatNeverWas) {
+  ScenePlay scene{.sensor = "kinect_v1", .duration_s = 0.2};
+  const SceneFigures before = play(scene);
+  EXPECT_GT(before.false_obstacles, 0.9);
+  EXPECT_EQ(before.every_link_clear, 0);
+  scene.declared = true;
+  const SceneFigures declared = play(scene);
+  EXPECT_GT(declared.answers, 0U);
+  EXPECT_LT(declared.false_obstacles, 0.1);
+  EXPECT_EQ(declared.every_link_clear, 1);
+  EXPECT_EQ(declared.largest_overestimate_m, 0);
 }
 
 TEST(Interference, ASecondKinectTakesMeasurementsAndVibrationGivesThemBack) {
