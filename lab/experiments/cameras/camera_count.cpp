@@ -215,8 +215,8 @@ std::vector<CameraCount> measure_camera_counts(const Options& options) {
       const double earlier_s = time_s - before * kCountedFrame_s;
       stage.move_to(earlier_s);
       for (Setup& setup : setups) {
-        const auto number = static_cast<std::uint64_t>((frame + 1) * 1000 + before);
-        setup.thin->take(stage, number, earlier_s);
+        const int number = (frame + 1) * 1000 + before;
+        setup.thin->take(stage, static_cast<std::uint64_t>(number), earlier_s);
         setup.methods[kCountedMemory].update(setup.thin->frames());
       }
     }
