@@ -25,6 +25,12 @@ set(depthgrid_debian_of_ZLIB::ZLIB zlib1g-dev)
 set(depthgrid_package_of_PNG::PNG PNG)
 set(depthgrid_module_of_PNG::PNG libpng)
 set(depthgrid_debian_of_PNG::PNG libpng-dev)
+set(depthgrid_package_of_LZ4::LZ4 LZ4)
+set(depthgrid_module_of_LZ4::LZ4 liblz4)
+set(depthgrid_debian_of_LZ4::LZ4 liblz4-dev)
+set(depthgrid_package_of_zstd::libzstd_shared zstd)
+set(depthgrid_module_of_zstd::libzstd_shared libzstd)
+set(depthgrid_debian_of_zstd::libzstd_shared libzstd-dev)
 set(depthgrid_package_of_hwy::hwy hwy)
 set(depthgrid_module_of_hwy::hwy libhwy)
 set(depthgrid_debian_of_hwy::hwy libhwy-dev)
@@ -89,6 +95,7 @@ configure_package_config_file(
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/depthgridConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/depthgridConfig.cmake" "${PROJECT_BINARY_DIR}/depthgridConfigVersion.cmake"
+  "${PROJECT_SOURCE_DIR}/cmake/FindLZ4.cmake"
   DESTINATION ${depthgrid_package_dir} COMPONENT dev)
 
 set(depthgrid_command "")

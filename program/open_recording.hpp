@@ -9,7 +9,8 @@
 
 namespace depthgrid::program {
 
-/// Throws UsageError where the options do not fit the recording, and Error where the recording is broken.
+/// Says on standard error what was found in an MCAP file. Throws UsageError where the options do not fit the recording,
+/// and Error where the recording is broken.
 files::Recording open_recording(const std::string& path, const files::RecordingOptions& options);
 
 /// The files of the recording, whichever of its frames are chosen: none of them may be lost.

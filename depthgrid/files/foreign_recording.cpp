@@ -24,9 +24,9 @@ struct Container {
 };
 
 constexpr const char* kRosTool = "the Python package rosbags reads it";
-constexpr std::array<Container, 7> kContainers{{
+constexpr std::string_view kMcapBegin = "\x89MCAP0\r\n";
+constexpr std::array<Container, 6> kContainers{{
     {".bag", "#ROSBAG V", "a ROS 1 bag, as rosbag and RealSense cameras write it", kRosTool},
-    {".mcap", "\x89MCAP0\r\n", "an MCAP file, as ROS 2 writes it", kRosTool},
     {".db3", "", "a ROS 2 bag", kRosTool},
     {".oni", "NI10", "an OpenNI recording of a Kinect or Xtion", "OpenNI 2 reads it"},
     {".mkv", "", "a Matroska recording, as Azure Kinects write it", "the Azure Kinect SDK reads it"},
@@ -78,11 +78,33 @@ std::string first_bytes(const fs::path& file) {
 
 }  // namespace
 
+fs::path mcap_recording(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
+    const bool is_called_so = lower_extension(path) == ".mcap" && fs::is_regular_file(path, error);
+    return is_called_so || first_bytes(path).starts_with(kMcapBegin) ? path : fs::path();
+  }
+  if (fs::exists(path / "rig.json", error)) {
+    return {};
+  }
+  fs::path found;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+    if (lower_extension(entry->path()) == ".mcap") {
+      if (!found.empty()) {
+        fail(path.string(), ": holds several MCAP files; name one of them, such as ",
+             std::min(found, entry->path()).string());
+      }
+      found = entry->path();
+    }
+  }
+  return found;
+}
+
 void refuse_foreign_recording(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     if (holds_a_bag(path) && !fs::exists(path / "rig.json", ignored)) {
-      refuse(path, kContainers[2]);
+      refuse(path, kContainers[1]);
     }
     return;
   }

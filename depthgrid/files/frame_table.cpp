@@ -87,6 +87,15 @@ FrameTable::FrameTable(const RigFile& rig_file, const fs::path& folder, const st
   }
 }
 
+FrameTable::FrameTable(const RigFile& rig_file, const std::vector<std::vector<double>>& times_s,
+                       const std::string& name)
+    : first_(rig_file.first_frame), by_time_(true) {
+  for (const std::vector<double>& times : times_s) {
+    images_.push_back({.pattern = {}, .file = {}, .time_s = times, .number = {}});
+  }
+  match_times(rig_file, name);
+}
+
 void FrameTable::match_times(const RigFile& rig_file, const std::string& name) {
   for (std::size_t k = 0; k < images_.size(); ++k) {
     if (images_[k].time_s.empty()) {
@@ -139,6 +148,11 @@ void FrameTable::match_numbers(const RigFile& rig_file, const std::string& name)
 
 int FrameTable::number(int index) const noexcept {
   return numbers_.empty() ? first_ + index : numbers_[static_cast<std::size_t>(index)];
+}
+
+std::optional<std::size_t> FrameTable::image(int index, std::size_t camera) const {
+  const std::size_t chosen = chosen_[camera][static_cast<std::size_t>(index)];
+  return chosen == kNoImage ? std::nullopt : std::optional(chosen);
 }
 
 std::optional<std::string> FrameTable::file(int index, std::size_t camera) const {

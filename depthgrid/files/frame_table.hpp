@@ -21,6 +21,9 @@ class FrameTable {
   /// Reads lists and folders of the rig file's cameras. `name` is the rig file in messages. Throws Error.
   FrameTable(const RigFile& rig_file, const std::filesystem::path& folder, const std::string& name);
 
+  /// Of images that lie elsewhere and have these times, ascending, a list a camera. Throws Error.
+  FrameTable(const RigFile& rig_file, const std::vector<std::vector<double>>& times_s, const std::string& name);
+
   [[nodiscard]] int count() const noexcept { return count_; }
   [[nodiscard]] int number(int index) const noexcept;
   [[nodiscard]] bool by_time() const noexcept { return by_time_; }
@@ -28,6 +31,8 @@ class FrameTable {
   [[nodiscard]] bool simultaneous() const noexcept { return simultaneous_; }
   /// Relative to the rig file's folder. None: the camera has no image in this frame.
   [[nodiscard]] std::optional<std::string> file(int index, std::size_t camera) const;
+  /// By time: which of the camera's images it is. None: the camera has no image in this frame.
+  [[nodiscard]] std::optional<std::size_t> image(int index, std::size_t camera) const;
   /// Time of the camera's image; the frame's where it has none. None: the recording does not say.
   [[nodiscard]] std::optional<double> time_s(int index, std::size_t camera) const;
 

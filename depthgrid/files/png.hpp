@@ -1,6 +1,7 @@
 // Reading and writing of PNG images. The PNG library itself is not visible from here.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -35,6 +36,10 @@ void read_png16(const std::filesystem::path& file, Gray16Image& image);
 /// An image of the camera called `id`: any other size is refused by the header, too.
 void read_png16(const std::filesystem::path& file, const PinholeCamera& camera, const std::string& id,
                 Gray16Image& image);
+
+/// The same of a PNG in memory, called `name` in messages.
+void read_png16(std::span<const std::byte> png, const std::string& name, const PinholeCamera& camera,
+                const std::string& id, Gray16Image& image);
 
 /// Write width_px x height_px images, row-major without padding: 16-bit gray, 8-bit gray, 8-bit RGB (three bytes a
 /// pixel, so 3 * width_px * height_px values). The image is written beside its place under a temporary name and then

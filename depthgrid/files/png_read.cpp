@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/error.hpp"
@@ -119,50 +120,79 @@ bool is_compressed_depth(std::FILE* stream, std::string_view signature) {
          png_sig_cmp(reinterpret_cast<png_const_bytep>(begin.data()) + kHeaderBytes, 0, kSignatureBytes) == 0;
 }
 
-void open(Reader& reader, const std::filesystem::path& file) {
+/// What is read, from a file or from memory.
+struct Source {
+  InputStream stream;
+  std::string name;     ///< in messages
+  std::uint64_t bytes;  ///< its size
+};
+
+Source open_file(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) {
     fail(file.string(), ": is a folder, needs to be a 16-bit grayscale PNG file");
   }
-  reader.stream = open_regular_file(file);
+  InputStream stream = open_regular_file(file);
+  std::error_code error;
+  const std::uint64_t bytes = std::filesystem::file_size(file, error);
+  return {std::move(stream), file.string(), error ? std::numeric_limits<std::uint64_t>::max() : bytes};
+}
+
+/// `png` must outlive it.
+Source open_memory(std::span<const std::byte> png, const std::string& name) {
+  if (png.empty()) {
+    fail(name, ": is empty (0 bytes), needs to be a 16-bit grayscale PNG");
+  }
+  // Opened for reading, so that nothing is written to it.
+  auto* const begin = const_cast<std::byte*>(png.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  InputStream stream(::fmemopen(begin, png.size(), "rb"));
+  if (stream == nullptr) {
+    fail(name, ": cannot be read: ", std::generic_category().message(errno));
+  }
+  return {std::move(stream), name, png.size()};
+}
+
+/// Up to where libpng begins.
+void begin_png(Reader& reader, Source source) {
+  const std::string file = std::move(source.name);
+  reader.stream = std::move(source.stream);
   std::array<png_byte, kSignatureBytes> signature{};
   const std::size_t count = std::fread(signature.data(), 1, signature.size(), reader.stream.get());
   if (count == 0) {
-    fail(file.string(), ": is empty (0 bytes), needs to be a 16-bit grayscale PNG file");
+    fail(file, ": is empty (0 bytes), needs to be a 16-bit grayscale PNG file");
   }
   if (std::string_view(reinterpret_cast<const char*>(signature.data()), count) == "version ") {
-    fail(file.string(), ": is no PNG file but text, probably a Git LFS pointer: run `git lfs pull` in its repository");
+    fail(file, ": is no PNG file but text, probably a Git LFS pointer: run `git lfs pull` in its repository");
   }
   if (png_sig_cmp(signature.data(), 0, count) != 0) {
     const std::string_view kind = image_kind_of_bytes({reinterpret_cast<const char*>(signature.data()), count});
     if (!kind.empty()) {
-      fail(file.string(), ": is no PNG file but ", kind, ", ", way_to_png(kind));
+      fail(file, ": is no PNG file but ", kind, ", ", way_to_png(kind));
     }
     if (is_compressed_depth(reader.stream.get(), {reinterpret_cast<const char*>(signature.data()), count})) {
-      fail(file.string(),
+      fail(file,
            ": is no PNG file but the data of a ROS compressedDepth message: of a 16UC1 one take away the first 12 "
            "bytes, "
            "what follows is the PNG; a 32FC1 one holds inverse depths, have image_transport republish it as raw");
     }
-    fail(file.string(), ": is no PNG file: its first bytes are not PNG's signature");
+    fail(file, ": is no PNG file: its first bytes are not PNG's signature");
   }
   if (count < kSignatureBytes) {
-    fail(file.string(), ": broken PNG: the file ends too early (truncated)");
+    fail(file, ": broken PNG: the file ends too early (truncated)");
   }
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
   reader.info = reader.png != nullptr ? png_create_info_struct(reader.png) : nullptr;
   if (reader.info == nullptr) {
-    fail(file.string(), ": cannot be read: libpng could not be started (out of memory?)");
+    fail(file, ": cannot be read: libpng could not be started (out of memory?)");
   }
 }
 
 /// Deflate packs at most 1032 bytes into one, so that a header alone cannot make us allocate an image.
-void check_header(const std::filesystem::path& file, std::uint64_t image_bytes, png_uint_32 width, png_uint_32 height) {
+void check_header(const std::string& file, std::uint64_t file_bytes, std::uint64_t image_bytes, png_uint_32 width,
+                  png_uint_32 height) {
   constexpr std::uint64_t kLargestRatio = 1032;
-  std::error_code error;
-  const std::uint64_t file_bytes = std::filesystem::file_size(file, error);
-  if (!error && image_bytes / kLargestRatio > file_bytes) {
-    fail(file.string(), ": broken PNG: ", file_bytes, " bytes cannot hold the ", width, " x ", height,
+  if (image_bytes / kLargestRatio > file_bytes) {
+    fail(file, ": broken PNG: ", file_bytes, " bytes cannot hold the ", width, " x ", height,
          " pixels that its header promises (truncated)");
   }
 }
@@ -173,49 +203,54 @@ struct PngSize {
 };
 
 /// `expected`: the camera's size, 0 x 0: any.
-void read_png(const std::filesystem::path& file, const PngSize& expected, const std::string& expected_by,
-              Gray16Image& image) {
+void read_png(Source source, const PngSize& expected, const std::string& expected_by, Gray16Image& image) {
+  const std::string file = source.name;
+  const std::uint64_t file_bytes = source.bytes;
   Reader reader;
-  open(reader, file);
+  begin_png(reader, std::move(source));
   if (!read_header(reader)) {
-    fail(file.string(), ": broken PNG: ", reader.message.data());
+    fail(file, ": broken PNG: ", reader.message.data());
   }
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info);
   const int colour = png_get_color_type(reader.png, reader.info);
   if (colour != PNG_COLOR_TYPE_GRAY || bits != 16) {
-    fail(file.string(), ": is a ", bits, "-bit ", colour_name(colour), " PNG, depth images need to be 16-bit gray");
+    fail(file, ": is a ", bits, "-bit ", colour_name(colour), " PNG, depth images need to be 16-bit gray");
   }
   if (width > png_uint_32{kLargestImageSide} || height > png_uint_32{kLargestImageSide}) {
-    fail(file.string(), ": is ", width, " x ", height, " pixels, a side must be at most ", kLargestImageSide);
+    fail(file, ": is ", width, " x ", height, " pixels, a side must be at most ", kLargestImageSide);
   }
   if (expected.width_px != 0 && (width != static_cast<png_uint_32>(expected.width_px) ||
                                  height != static_cast<png_uint_32>(expected.height_px))) {
-    fail(file.string(), ": is ", width, " x ", height, " pixels, the calibration of ", expected_by, " is for ",
+    fail(file, ": is ", width, " x ", height, " pixels, the calibration of ", expected_by, " is for ",
          expected.width_px, " x ", expected.height_px);
   }
   const std::uint64_t count = std::uint64_t{width} * height;
   if (count > kLargestImagePixels) {
-    fail(file.string(), ": is ", width, " x ", height, " = ", count, " pixels, must have at most ",
-         kLargestImagePixels);
+    fail(file, ": is ", width, " x ", height, " = ", count, " pixels, must have at most ", kLargestImagePixels);
   }
-  check_header(file, count * sizeof(std::uint16_t), width, height);
+  check_header(file, file_bytes, count * sizeof(std::uint16_t), width, height);
   image.pixels.resize(count);
   image.width_px = static_cast<int>(width);
   image.height_px = static_cast<int>(height);
   if (!read_pixels(reader, image.pixels.data(), width, height)) {
-    fail(file.string(), ": broken PNG: ", reader.message.data());
+    fail(file, ": broken PNG: ", reader.message.data());
   }
 }
 
 }  // namespace
 
-void read_png16(const std::filesystem::path& file, Gray16Image& image) { read_png(file, {}, {}, image); }
+void read_png16(const std::filesystem::path& file, Gray16Image& image) { read_png(open_file(file), {}, {}, image); }
 
 void read_png16(const std::filesystem::path& file, const PinholeCamera& camera, const std::string& id,
                 Gray16Image& image) {
-  read_png(file, {camera.width_px, camera.height_px}, "camera '" + id + "'", image);
+  read_png(open_file(file), {camera.width_px, camera.height_px}, "camera '" + id + "'", image);
+}
+
+void read_png16(std::span<const std::byte> png, const std::string& name, const PinholeCamera& camera,
+                const std::string& id, Gray16Image& image) {
+  read_png(open_memory(png, name), {camera.width_px, camera.height_px}, "camera '" + id + "'", image);
 }
 
 Gray16Image read_png16(const std::filesystem::path& file) {

@@ -1,8 +1,6 @@
 #include "depthgrid/files/recording.hpp"
 
 #include <algorithm>
-#include <set>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -12,54 +10,15 @@
 #include "depthgrid/files/camera_poses.hpp"
 #include "depthgrid/files/foreign_recording.hpp"
 #include "depthgrid/files/frame_table.hpp"
+#include "depthgrid/files/mcap_images.hpp"
+#include "depthgrid/files/rig_selection.hpp"
 
 namespace depthgrid::files {
 namespace {
 
 std::filesystem::path rig_path(const std::filesystem::path& path) {
-  refuse_foreign_recording(path);
   std::error_code ignored;
   return std::filesystem::is_directory(path, ignored) ? path / "rig.json" : path;
-}
-
-/// Throws ChoiceError with the parts streamed one after the other into one line.
-template <class... Parts>
-[[noreturn]] void fail_choice(const Parts&... parts) {
-  std::ostringstream text;
-  (text << ... << parts);
-  throw ChoiceError(text.str());
-}
-
-std::size_t index_of(const Rig& rig, const std::string& id, const std::string& name) {
-  try {
-    return camera_index(rig, id);
-  } catch (const Error& error) {
-    fail_choice(name, ": ", error.what());
-  }
-}
-
-/// The file with only the cameras of `ids`, in that order.
-RigFile select(RigFile all, const std::vector<std::string>& ids, const std::string& name) {
-  if (ids.empty()) {
-    return all;
-  }
-  RigFile chosen = all;
-  chosen.rig.cameras.clear();
-  chosen.depth_files.clear();
-  chosen.tracks.clear();
-  std::set<std::string> seen;
-  for (const std::string& id : ids) {
-    if (!seen.insert(id).second) {
-      fail_choice(name, ": camera '", id, "' is chosen twice");
-    }
-    const std::size_t k = index_of(all.rig, id, name);
-    chosen.rig.cameras.push_back(all.rig.cameras[k]);
-    chosen.depth_files.push_back(all.depth_files[k]);
-    if (!all.tracks.empty()) {
-      chosen.tracks.push_back(all.tracks[k]);
-    }
-  }
-  return chosen;
 }
 
 /// Before anybody takes memory for such images.
@@ -75,11 +34,22 @@ void check_size(const RigCamera& camera, const std::string& name) {
 }  // namespace
 
 Recording::Recording(const std::filesystem::path& path, const RecordingOptions& options) {
-  rig_file_ = rig_path(path);
+  mcap_file_ = mcap_recording(path);
+  rig_file_ = mcap_file_.empty() ? rig_path(path) : options.mcap.rig.empty() ? mcap_file_ : options.mcap.rig;
   const std::string name = rig_file_.string();
-  file_ = select(load_rig(rig_file_), options.camera_ids, name);
   const std::filesystem::path folder = rig_file_.parent_path();
-  table_ = std::make_shared<const FrameTable>(file_, folder, name);
+  if (mcap_file_.empty()) {
+    if (options.mcap.is_set()) {
+      fail_choice(name, ": topics, world frame, tolerance and rig file are chosen of MCAP files only");
+    }
+    refuse_foreign_recording(path);
+    file_ = select_cameras(load_rig(rig_file_), options.camera_ids, name);
+    table_ = std::make_shared<const FrameTable>(file_, folder, name);
+  } else {
+    mcap_ = std::make_shared<McapImages>(mcap_file_, options.mcap, options.camera_ids);
+    file_ = mcap_->rig_file();
+    table_ = std::make_shared<const FrameTable>(file_, mcap_->times_s(), name);
+  }
   poses_.resize(file_.rig.cameras.size());
   for (std::size_t k = 0; k < file_.tracks.size(); ++k) {
     if (file_.tracks[k].moves()) {
@@ -105,6 +75,8 @@ Recording::Recording(const std::filesystem::path& path, const RecordingOptions& 
     }
     const PinholeCamera& intrinsics = camera.intrinsics;
     channels_[k].recorded = intrinsics;
+    channels_[k].recorded_distortion = camera.distortion;
+    channels_[k].pixels = mcap_ ? std::make_shared<McapPixels>() : nullptr;
     check_size(camera, name);
     if (distorts(camera.distortion)) {
       const PinholeCamera rectified = rectified_camera(intrinsics, camera.distortion);
@@ -133,6 +105,13 @@ void Recording::check_place(int index, std::size_t camera) const {
   }
 }
 
+std::vector<std::string> Recording::notes() const { return mcap_ ? mcap_->notes() : std::vector<std::string>(); }
+
+double Recording::stamp_s(int index, std::size_t camera) const {
+  check_place(index, camera);
+  return table_->time_s(index, camera).value_or(index);
+}
+
 double Recording::start_s() const { return table_->by_time() ? table_->time_s(0, 0).value_or(0) : 0.0; }
 
 std::optional<double> Recording::time_s(int index) const {
@@ -143,17 +122,15 @@ std::optional<double> Recording::time_s(int index) const {
 
 bool Recording::has_image(int index, std::size_t camera) const {
   check_place(index, camera);
-  return table_->file(index, camera).has_value();
+  return mcap_ ? table_->image(index, camera).has_value() : table_->file(index, camera).has_value();
 }
 
 std::filesystem::path Recording::depth_file(int index, std::size_t camera) const {
-  check_place(index, camera);
-  const auto file = table_->file(index, camera);
-  if (!file) {
+  if (!has_image(index, camera)) {
     fail(rig_file_.string(), ": camera '", file_.rig.cameras[camera].id, "' has no image in frame ",
          frame_number(index));
   }
-  return rig_file_.parent_path() / *file;
+  return mcap_ ? mcap_file_ : rig_file_.parent_path() / *table_->file(index, camera);
 }
 
 bool Recording::moves() const noexcept {
@@ -195,6 +172,17 @@ std::vector<bool> Recording::pixels_read(std::size_t camera) const {
   return channels_.at(camera).undistortion ? channels_[camera].undistortion->pixels_read() : std::vector<bool>();
 }
 
+DepthView Recording::read_recorded(int index, std::size_t camera) {
+  const std::filesystem::path file = depth_file(index, camera);
+  const RigCamera& of = file_.rig.cameras[camera];
+  Channel& channel = channels_[camera];
+  if (mcap_) {
+    return mcap_->read(camera, *table_->image(index, camera), of, channel.recorded, *channel.pixels);
+  }
+  read_png16(file, channel.recorded, of.id, channel.raw);
+  return depth_view(channel.raw.pixels, channel.recorded.width_px, channel.recorded.height_px, of.metres_per_unit);
+}
+
 std::span<const Frame> Recording::read(int index) {
   check_place(index, 0);
   for (std::size_t k = 0; k < channels_.size(); ++k) {
@@ -207,11 +195,7 @@ std::span<const Frame> Recording::read(int index) {
     if (table_->by_time() && !has_image(index, k)) {
       continue;
     }
-    const std::filesystem::path image_file = depth_file(index, k);
-    read_png16(image_file, channel.recorded, camera.id, channel.raw);
-    const int width_px = channel.recorded.width_px;
-    const int height_px = channel.recorded.height_px;
-    frame.depth = depth_view(channel.raw.pixels, width_px, height_px, camera.metres_per_unit);
+    frame.depth = read_recorded(index, k);
     if (channel.undistortion) {
       normalise(frame.depth, camera.rule, channel.distorted);
       channel.undistortion->apply(channel.distorted, channel.undistorted);

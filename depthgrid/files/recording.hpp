@@ -24,6 +24,20 @@ class ChoiceError : public Error {
   using Error::Error;
 };
 
+/// What a file of ROS messages (MCAP) leaves open. Of a folder with a rig file nothing of it may be set.
+struct McapChoice {
+  /// Topics of depth images, "/left/depth/image_raw" or "left=/left/depth/image_raw" with the camera's id. Empty: all
+  /// that there are; ids are then the topics' names without "/depth/image_...".
+  std::vector<std::string> depth_topics;
+  std::string world_frame;              ///< empty: the frame at the root of /tf_static
+  std::filesystem::path rig;            ///< in place of camera_info and /tf_static: a rig file; its images are not read
+  std::optional<double> tolerance_s{};  ///< how far apart images of one frame may be; none: the rig file's
+
+  [[nodiscard]] bool is_set() const noexcept {
+    return !depth_topics.empty() || !world_frame.empty() || !rig.empty() || tolerance_s;
+  }
+};
+
 /// What to take of a recording.
 struct RecordingOptions {
   std::vector<std::string> camera_ids;  ///< cameras in the order wanted; empty: all, in the file's order
@@ -34,8 +48,11 @@ struct RecordingOptions {
   /// In place of every camera's own filter radius (SensorMargin::lateral_px; 1 where it states no margins), which is
   /// needed before distortion is removed, too.
   std::optional<int> lateral_px = std::nullopt;
+  McapChoice mcap{};
 };
 
+class McapImages;
+struct McapPixels;
 class FrameTable;
 class CameraPoses;
 
@@ -44,16 +61,17 @@ class CameraPoses;
 /// tolerance. Not thread-safe.
 class Recording {
  public:
-  /// `path` is the folder that holds a rig.json, or a rig file of any name. Throws Error as load_rig(), and for
-  /// cameras without depth images, lists and trajectories that are broken; ChoiceError for unknown or doubled camera
-  /// ids, and near and far that exclude each other. No image is read.
+  /// `path` is the folder that holds a rig.json, or a rig file of any name; or an MCAP file of ROS 2, or the folder of
+  /// a ROS 2 bag with one such file (docs/recordings-mcap.md). Throws Error as load_rig(), and for cameras without
+  /// depth images, lists and trajectories that are broken; ChoiceError for unknown or doubled camera ids, and near and
+  /// far that exclude each other. No image is read.
   explicit Recording(const std::filesystem::path& path, const RecordingOptions& options = {});
 
   /// The cameras chosen, as their images are handed out: lens distortion is removed, so the model is `none` and the
   /// intrinsics are those of rectified_camera(), whose image may be larger than the one recorded. The pose of a
   /// camera that moves is the identity: see T_world_camera().
   [[nodiscard]] const Rig& rig() const noexcept { return file_.rig; }
-  /// The rig file that it was opened from.
+  /// The rig file that it was opened from; of an MCAP file without one the file itself.
   [[nodiscard]] const std::filesystem::path& rig_file() const noexcept { return rig_file_; }
   [[nodiscard]] int frame_count() const noexcept;
   /// The number of frame `index`: in the names of the image files, or counted in the order of time. They ascend.
@@ -72,6 +90,10 @@ class Recording {
   [[nodiscard]] bool simultaneous() const noexcept;
   /// Whether the camera has an image in frame `index`. Numbered images are not looked for.
   [[nodiscard]] bool has_image(int index, std::size_t camera) const;
+  /// The MCAP file that the images are in; empty: they are PNG files.
+  [[nodiscard]] const std::filesystem::path& mcap_file() const noexcept { return mcap_file_; }
+  /// What was found in an MCAP file, and what is missing of it: lines for people.
+  [[nodiscard]] std::vector<std::string> notes() const;
   /// The image file of frame `index` of camera `camera` (index in rig()). Throws Error where there is none.
   [[nodiscard]] std::filesystem::path depth_file(int index, std::size_t camera) const;
 
@@ -80,6 +102,9 @@ class Recording {
   [[nodiscard]] bool moves() const noexcept;
   /// Whether a trajectory with time stamps says where a camera was.
   [[nodiscard]] bool has_trajectory() const noexcept;
+  /// The time stamp of the camera's image on the clock of the images; where they have none, since the first frame by
+  /// the rate, or the index where there is no rate either. Of a camera without image in the frame: the frame's.
+  [[nodiscard]] double stamp_s(int index, std::size_t camera) const;
   /// Where the camera was when it took its image of frame `index`. Throws Error where the recording does not say.
   [[nodiscard]] Pose T_world_camera(int index, std::size_t camera) const;
 
@@ -90,6 +115,14 @@ class Recording {
   [[nodiscard]] const PinholeCamera& recorded_intrinsics(std::size_t camera) const {
     return channels_.at(camera).recorded;
   }
+
+  [[nodiscard]] const Distortion& recorded_distortion(std::size_t camera) const {
+    return channels_.at(camera).recorded_distortion;
+  }
+
+  /// One camera's image of frame `index` as it was recorded, before lens distortion is removed; valid until the next
+  /// read. Throws Error as read(), and where the camera has no image in this frame.
+  [[nodiscard]] DepthView read_recorded(int index, std::size_t camera);
 
   /// Reads frame `index` of all cameras: one Frame a camera, in the order of rig(), valid until the next read or the
   /// end of the recording. Depth is the file's own 16-bit buffer (apply the camera's rule to it), or float metres where
@@ -108,7 +141,9 @@ class Recording {
  private:
   struct Channel {
     Gray16Image raw;
-    PinholeCamera recorded;  ///< intrinsics of the images in the files
+    std::shared_ptr<McapPixels> pixels;  ///< in place of `raw` for an MCAP file
+    PinholeCamera recorded;              ///< intrinsics of the images in the files
+    Distortion recorded_distortion;
     std::optional<DepthUndistortion> undistortion;
     DepthImage distorted;
     DepthImage undistorted;
@@ -116,7 +151,9 @@ class Recording {
   void check_place(int index, std::size_t camera) const;
 
   std::filesystem::path rig_file_;
-  RigFile file_;  ///< reduced to the chosen cameras
+  std::filesystem::path mcap_file_;
+  std::shared_ptr<McapImages> mcap_;  ///< null: images are files
+  RigFile file_;                      ///< reduced to the chosen cameras
   std::shared_ptr<const FrameTable> table_;
   std::vector<std::shared_ptr<const CameraPoses>> poses_;  ///< one a camera; null: it stands still
   std::vector<Channel> channels_;

@@ -17,6 +17,7 @@
 #include "program/distances/distances_plan.hpp"
 #include "program/distances/frame_picture.hpp"
 #include "program/distances/least_padding.hpp"
+#include "program/mcap_options.hpp"
 #include "program/output_file.hpp"
 #include "program/usage_error.hpp"
 #include "program/warning.hpp"
@@ -195,7 +196,8 @@ void run(const DistancesOptions& options) {
 }
 
 void add_input_options(CLI::App& command, DistancesOptions& options) {
-  command.add_option("RECORDING", options.recording, "folder with a rig.json, or a rig file")->required();
+  command.add_option("RECORDING", options.recording, "folder with a rig.json, a rig file, or an MCAP file of ROS 2")
+      ->required();
   command.add_option("--cameras", options.cameras, "ids of the cameras to use, with commas: cam1,cam3 (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
@@ -241,6 +243,7 @@ void add_distances_command(CLI::App& app) {
   auto options = std::make_shared<DistancesOptions>();
   CLI::App* command = app.add_subcommand("distances", "distances from control points to obstacles in a recording");
   add_input_options(*command, *options);
+  add_mcap_options(*command, options->mcap);
   add_output_options(*command, *options);
   add_evaluation_options(*command, options->evaluation);
   add_sensor_options(*command, options->sensor);

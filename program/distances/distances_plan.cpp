@@ -346,6 +346,7 @@ DistancesPlan plan_distances(const DistancesOptions& options) {
   recording_options.far_m = far_limit_m(options.sensor);
   recording_options.clamp_beyond_far = clamp_beyond_far(options.sensor);
   recording_options.lateral_px = filter_radius_px(options.sensor);
+  recording_options.mcap = options.mcap;
   files::Recording recording = open_recording(options.recording, recording_options);
   auto margins = as_usage([&] { return camera_margins(options.sensor, recording.rig(), searches); });
   std::vector<std::string> assumptions;

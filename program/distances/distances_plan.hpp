@@ -25,6 +25,7 @@ namespace depthgrid::program {
 /// As given on the command line.
 struct DistancesOptions {
   std::string recording;
+  files::McapChoice mcap;
   std::vector<std::string> cameras;
   std::string principal;
   PointOptions points;

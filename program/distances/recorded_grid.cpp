@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "depthgrid/core/error.hpp"
-#include "depthgrid/files/png.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
 #include "depthgrid/grid/map/map_file.hpp"
 #include "program/usage_error.hpp"
@@ -19,17 +18,13 @@ namespace {
 double deepest_reading_m(files::Recording& recording, std::size_t camera, const MeasurementRule& rule,
                          const std::vector<int>& indices) {
   report::ProgressLine progress("looking for the deepest reading, frame", indices.size());
-  files::Gray16Image image;
   double deepest_m = 0;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (!recording.has_image(indices[i], camera)) {
       continue;
     }
-    const auto file = recording.depth_file(indices[i], camera);
-    files::read_png16(file, recording.recorded_intrinsics(camera), recording.rig().cameras[camera].id, image);
-    const auto view =
-        depth_view(image.pixels, image.width_px, image.height_px, recording.rig().cameras[camera].metres_per_unit);
-    DepthImage depth(image.width_px, image.height_px);
+    const DepthView view = recording.read_recorded(indices[i], camera);
+    DepthImage depth(view.width_px, view.height_px);
     normalise(view, rule, depth);
     const auto* end = depth.data() + depth.index(0, depth.height_px());
     deepest_m = std::max(deepest_m, static_cast<double>(*std::max_element<const float*>(depth.data(), end)));

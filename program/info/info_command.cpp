@@ -13,6 +13,7 @@
 #include "program/info/hole_picture.hpp"
 #include "program/info/info_report.hpp"
 #include "program/info/surface.hpp"
+#include "program/mcap_options.hpp"
 #include "program/open_recording.hpp"
 #include "program/output_check.hpp"
 #include "program/output_file.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 struct InfoOptions {
   std::string recording;
+  files::McapChoice mcap;
   std::vector<std::string> cameras;
   std::string frames;
   std::optional<double> near_m;
@@ -122,6 +124,7 @@ void run(const InfoOptions& options) {
   recording_options.camera_ids = options.cameras;
   recording_options.near_m = options.near_m;
   recording_options.far_m = options.far_m;
+  recording_options.mcap = options.mcap;
   files::Recording recording = open_recording(options.recording, recording_options);
   const std::vector<int> indices = select_frames(options.frames, recording);
 
@@ -151,10 +154,12 @@ void run(const InfoOptions& options) {
 void add_info_command(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "what a recording holds and how well its cameras agree");
-  command->add_option("RECORDING", options->recording, "folder with a rig.json, or a rig file")->required();
+  command->add_option("RECORDING", options->recording, "folder with a rig.json, a rig file, or an MCAP file of ROS 2")
+      ->required();
   command->add_option("--cameras", options->cameras, "ids of the cameras to use (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_mcap_options(*command, options->mcap);
   command->add_option("--frames", options->frames, "frames: 5, 0:80 (both included), 0:80:8 or 1,4,9 (default: all)");
   command->add_option("--near", options->near_m, "nearest measurable depth, metres");
   command->add_option("--far", options->far_m, "farthest measurable depth, metres");

@@ -60,6 +60,9 @@ std::string storage_text(grid::MapStorage storage) {
 Rig chosen_cameras(const BuildOptions& options) {
   std::filesystem::path file = options.rig;
   files::refuse_foreign_recording(file);
+  if (!files::mcap_recording(file).empty()) {
+    fail(file.string(), ": is an MCAP file, and a map is built of a rig file");
+  }
   if (std::filesystem::is_directory(file)) {
     file /= "rig.json";
   }

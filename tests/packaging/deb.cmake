@@ -44,7 +44,7 @@ require_package(depthgrid ${architecture} SECTION science
   FILES bin/depthgrid share/man/man1/depthgrid\\.1\\.gz share/man/man1/depthgrid-demo\\.1\\.gz
         share/depthgrid/robots/kuka_lwr4\\.urdf)
 require_package(libdepthgrid-dev ${architecture} SECTION libdevel
-  LINES "Depends: depthgrid \\(= ${version}\\), libeigen3-dev, libhwy-dev, zlib1g-dev, libpng-dev, libpugixml-dev, cyclonedds-dev, libyaml-cpp-dev\n"
+  LINES "Depends: depthgrid \\(= ${version}\\), libeigen3-dev, libhwy-dev, zlib1g-dev, libpng-dev, liblz4-dev, libzstd-dev, libpugixml-dev, cyclonedds-dev, libyaml-cpp-dev\n"
   FILES lib/libdepthgrid_core\\.a lib/libdepthgrid_avoidance\\.a lib/cmake/depthgrid/depthgridConfig\\.cmake
         lib/pkgconfig/depthgrid_search\\.pc include/depthgrid/core/camera\\.hpp include/depthgrid/grid/evaluation\\.hpp
         share/doc/libdepthgrid-dev/examples/consumer/CMakeLists\\.txt)

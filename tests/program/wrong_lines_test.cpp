@@ -388,9 +388,9 @@ TEST(ForeignRecording, IsExplained) {
   };
   for (const auto& [name, bytes, what] :
        {Foreign{"a.bag", "#ROSBAG V2.0\n", "a ROS 1 bag"}, Foreign{"renamed.json", "#ROSBAG V2.0\n", "a ROS 1 bag"},
-        Foreign{"a.mcap", "\x89MCAP0\r\n....", "an MCAP file"}, Foreign{"a.ONI", "NI10....", "an OpenNI recording"},
-        Foreign{"a.db3", "SQLite format 3", "a ROS 2 bag"}, Foreign{"empty.bag", "", "a ROS 1 bag"},
-        Foreign{"a.svo2", "...", "a recording of a ZED camera"}, Foreign{"bag2/metadata_0.mcap", "", "a ROS 2 bag"},
+        Foreign{"a.ONI", "NI10....", "an OpenNI recording"}, Foreign{"a.db3", "SQLite format 3", "a ROS 2 bag"},
+        Foreign{"empty.bag", "", "a ROS 1 bag"}, Foreign{"a.svo2", "...", "a recording of a ZED camera"},
+        Foreign{"bag2/metadata_0.db3", "", "a ROS 2 bag"},
         Foreign{"bag2/metadata.yaml", "rosbag2_bagfile_information:", "a ROS 2 bag"}}) {
     const TemporaryFolder folder;
     (void)folder.write(name, bytes);

@@ -1,0 +1,580 @@
+#include "depthgrid/files/mcap_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/core/whole_file.hpp"
+#include "depthgrid/files/mcap_compression.hpp"
+#include "depthgrid/files/mcap_format.hpp"
+
+namespace depthgrid::files {
+namespace {
+
+/// A summary is held in memory: of larger ones the file is read from its beginning.
+constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 26U;
+/// Chunks kept decompressed: images of one instant lie in neighbouring ones.
+constexpr std::size_t kChunksKept = 3;
+
+struct Schema {
+  std::string name;
+  std::string encoding;
+  std::string definition;
+};
+
+struct Channel {
+  std::uint16_t schema = 0;
+  McapChannel described;
+};
+
+/// A chunk in the file, and where the index says that its messages are listed.
+struct ChunkPlace {
+  std::uint64_t position = 0;
+  std::map<std::uint16_t, std::uint64_t> index_of;  ///< by channel; empty: it has to be looked through
+};
+
+struct Chunk {
+  std::uint64_t position = 0;
+  std::vector<std::byte> records;
+};
+
+struct Head {
+  std::uint8_t opcode = 0;
+  std::uint64_t length = 0;
+};
+
+}  // namespace
+
+class McapReader::File {
+ public:
+  explicit File(const std::filesystem::path& file) : name_(file.string()), stream_(open_regular_file(file)) {
+    if (::fseeko(stream_.get(), 0, SEEK_END) != 0) {
+      fail(name_, ": cannot be read: its size is not known");
+    }
+    size_ = static_cast<std::uint64_t>(::ftello(stream_.get()));
+    check_magic();
+    if (!read_summary()) {
+      scan();
+    }
+    describe_channels();
+  }
+
+  [[nodiscard]] std::vector<McapEntry> entries(std::span<const std::uint16_t> asked) {
+    const std::set<std::uint16_t> wanted(asked.begin(), asked.end());
+    if (by_index_) {
+      try {
+        return listed_by_index(wanted);
+      } catch (const Error& error) {
+        note(std::string("its index is not used: ") + error.what());
+      }
+      by_index_ = false;
+      scan();
+    }
+    return listed(wanted);
+  }
+
+  [[nodiscard]] McapMessage read(const McapEntry& entry) {
+    const std::string where = name_ + ": message at byte " + std::to_string(entry.position) +
+                              (entry.in_chunk ? " + " + std::to_string(entry.offset) : std::string());
+    std::span<const std::byte> bytes;
+    if (entry.in_chunk) {
+      const Chunk& chunk = chunk_at(entry.position);
+      if (entry.offset > chunk.records.size()) {
+        fail(where, ": the index is broken: the chunk has ", chunk.records.size(), " bytes");
+      }
+      bytes = std::span<const std::byte>(chunk.records).subspan(static_cast<std::size_t>(entry.offset));
+    } else {
+      const Head head = head_at(entry.position);
+      read_at(entry.position, kMcapRecordHead + checked_length(entry.position, head), record_);
+      bytes = record_;
+    }
+    const McapRecord record = take_mcap_record(bytes, where);
+    if (record.opcode != McapOpcode::message) {
+      fail(where, ": the index is broken: there is a record ", static_cast<int>(record.opcode), ", no message");
+    }
+    McapContents contents(record.contents, where);
+    McapMessage message;
+    message.channel = contents.number<std::uint16_t>("channel");
+    message.sequence = contents.number<std::uint32_t>("sequence");
+    message.log_time_ns = contents.number<std::uint64_t>("log_time");
+    message.publish_time_ns = contents.number<std::uint64_t>("publish_time");
+    message.data = contents.rest();
+    if (message.channel != entry.channel || message.log_time_ns != entry.log_time_ns) {
+      fail(where, ": the index is broken: there is a message of channel ", message.channel, " and time ",
+           message.log_time_ns, " ns, not of channel ", entry.channel, " and time ", entry.log_time_ns, " ns");
+    }
+    return message;
+  }
+
+  [[nodiscard]] std::span<const McapChannel> channels() const noexcept { return channels_; }
+  [[nodiscard]] const std::string& profile() const noexcept { return profile_; }
+  [[nodiscard]] const std::string& damage() const noexcept { return damage_; }
+
+ private:
+  void note(const std::string& words) { damage_ += (damage_.empty() ? "" : "; ") + words; }
+
+  // The file.
+
+  void read_at(std::uint64_t position, std::uint64_t count, std::vector<std::byte>& bytes) {
+    bytes.resize(static_cast<std::size_t>(count));
+    if (::fseeko(stream_.get(), static_cast<off_t>(position), SEEK_SET) != 0 ||
+        std::fread(bytes.data(), 1, bytes.size(), stream_.get()) != bytes.size()) {
+      fail(name_, ": cannot be read: ", count, " bytes at byte ", position);
+    }
+  }
+
+  /// There must be such a head.
+  [[nodiscard]] Head head_at(std::uint64_t position) {
+    if (position > size_ || size_ - position < kMcapRecordHead) {
+      fail(name_, ": the index is broken: byte ", position, " of ", size_, " holds no record");
+    }
+    read_at(position, kMcapRecordHead, head_);
+    McapContents head(head_, name_);
+    Head found;
+    found.opcode = head.number<std::uint8_t>("opcode");
+    found.length = head.number<std::uint64_t>("length");
+    return found;
+  }
+
+  [[nodiscard]] bool fits(std::uint64_t position, const Head& head) const noexcept {
+    return head.length <= size_ - position - kMcapRecordHead;
+  }
+
+  /// Of a record that is taken into memory.
+  [[nodiscard]] std::uint64_t checked_length(std::uint64_t position, const Head& head) const {
+    if (!fits(position, head)) {
+      fail(name_, ": broken: the record at byte ", position, " has ", head.length, " bytes, the file ends before");
+    }
+    if (head.length > kLargestMcapChunk) {
+      fail(name_, ": the record at byte ", position, " has ", head.length, " bytes, must have at most ",
+           kLargestMcapChunk);
+    }
+    return head.length;
+  }
+
+  void check_magic() {
+    std::vector<std::byte> begin;
+    read_at(0, std::min<std::uint64_t>(size_, kMcapMagic.size()), begin);
+    const auto begins_with = [&](std::span<const std::uint8_t> bytes) {
+      return begin.size() >= bytes.size() && std::equal(bytes.begin(), bytes.end(), begin.begin(),
+                                                        [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
+    };
+    constexpr std::array<std::uint8_t, 4> kZstd{0x28, 0xB5, 0x2F, 0xFD};
+    if (begins_with(kZstd)) {
+      fail(name_, ": is a file compressed as a whole with zstd; decompress it first: unzstd ", name_);
+    }
+    if (!begins_with(kMcapMagic)) {
+      fail(name_,
+           ": is no MCAP file: ", begin.empty() ? "it is empty" : "its first bytes are not those of MCAP, version 0");
+    }
+  }
+
+  // What is in it.
+
+  void add_schema(std::span<const std::byte> contents) {
+    McapContents in(contents, name_);
+    const auto id = in.number<std::uint16_t>("schema");
+    Schema schema;
+    schema.name = in.text("name");
+    schema.encoding = in.text("encoding");
+    const std::span<const std::byte> data = in.bytes(in.number<std::uint32_t>("data"), "data");
+    schema.definition.assign(reinterpret_cast<const char*>(data.data()), data.size());
+    schemas_.try_emplace(id, std::move(schema));
+  }
+
+  void add_channel(std::span<const std::byte> contents) {
+    McapContents in(contents, name_);
+    Channel channel;
+    channel.described.id = in.number<std::uint16_t>("channel");
+    channel.schema = in.number<std::uint16_t>("schema");
+    channel.described.topic = in.text("topic");
+    channel.described.encoding = in.text("message_encoding");
+    channel.described.metadata = in.texts("metadata");
+    const std::string topic = channel.described.topic;
+    const auto [place, is_new] = by_id_.try_emplace(channel.described.id, std::move(channel));
+    if (!is_new && place->second.described.topic != topic) {
+      fail(name_, ": broken: channel ", place->first, " is '", printable_excerpt(place->second.described.topic),
+           "' in one place and '", printable_excerpt(topic), "' in another");
+    }
+  }
+
+  void describe_channels() {
+    for (auto& [id, channel] : by_id_) {
+      if (const auto schema = schemas_.find(channel.schema); schema != schemas_.end()) {
+        channel.described.type = schema->second.name;
+        channel.described.schema_encoding = schema->second.encoding;
+        channel.described.definition = schema->second.definition;
+      }
+      channels_.push_back(channel.described);
+    }
+  }
+
+  void add_header(std::span<const std::byte> contents) {
+    McapContents in(contents, name_);
+    profile_ = in.text("profile");
+  }
+
+  // By the summary.
+
+  /// False where there is none that can be used; then nothing is known yet.
+  bool read_summary() {
+    try {
+      if (use_summary()) {
+        by_index_ = true;
+        return true;
+      }
+    } catch (const Error& error) {
+      note(std::string("its summary is not used: ") + error.what());
+    }
+    by_id_.clear();
+    schemas_.clear();
+    chunks_.clear();
+    counts_.clear();
+    has_counts_ = false;
+    profile_.clear();
+    return false;
+  }
+
+  /// Throws where it is broken.
+  bool use_summary() {
+    const std::uint64_t tail = kMcapRecordHead + kMcapFooterBytes + kMcapMagic.size();
+    if (size_ < kMcapMagic.size() + tail) {
+      return false;
+    }
+    const std::uint64_t footer_at = size_ - tail;
+    std::vector<std::byte> end;
+    read_at(footer_at, tail, end);
+    has_end_ =
+        std::equal(kMcapMagic.begin(), kMcapMagic.end(), end.end() - static_cast<std::ptrdiff_t>(kMcapMagic.size()),
+                   [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
+    if (!has_end_) {
+      return false;  // the file is cut, and scan() says where
+    }
+    std::span<const std::byte> rest(end);
+    const McapRecord footer = take_mcap_record(rest, name_);
+    if (footer.opcode != McapOpcode::footer || footer.contents.size() != kMcapFooterBytes) {
+      return false;  // a footer of a later version
+    }
+    McapContents in(footer.contents, name_);
+    const auto start = in.number<std::uint64_t>("summary_start");
+    static_cast<void>(in.number<std::uint64_t>("summary_offset_start"));
+    const auto crc = in.number<std::uint32_t>("summary_crc");
+    if (start == 0) {
+      return false;
+    }
+    if (start > footer_at || footer_at - start > kLargestSummary) {
+      fail("it begins at byte ", start, " of ", footer_at);
+    }
+    std::vector<std::byte> summary;
+    read_at(start, footer_at - start + kMcapRecordHead + kMcapFooterBytes - sizeof(crc), summary);
+    if (crc != 0 && mcap_crc(summary) != crc) {
+      fail("its CRC is wrong");
+    }
+    return take_summary(std::span<const std::byte>(summary).first(static_cast<std::size_t>(footer_at - start)));
+  }
+
+  /// Whether it says enough.
+  bool take_summary(std::span<const std::byte> records) {
+    while (!records.empty()) {
+      const McapRecord record = take_mcap_record(records, "a record of it");
+      switch (record.opcode) {
+        case McapOpcode::schema:
+          add_schema(record.contents);
+          break;
+        case McapOpcode::channel:
+          add_channel(record.contents);
+          break;
+        case McapOpcode::chunk_index:
+          add_chunk_index(record.contents);
+          break;
+        case McapOpcode::statistics:
+          add_statistics(record.contents);
+          break;
+        default:
+          break;
+      }
+    }
+    const Head head = head_at(kMcapMagic.size());
+    if (head.opcode == static_cast<std::uint8_t>(McapOpcode::header)) {
+      std::vector<std::byte> header;
+      read_at(kMcapMagic.size() + kMcapRecordHead, checked_length(kMcapMagic.size(), head), header);
+      add_header(header);
+    }
+    for (const ChunkPlace& chunk : chunks_) {
+      for (const auto& [channel, position] : chunk.index_of) {
+        if (!by_id_.contains(channel)) {
+          return false;
+        }
+      }
+      if (chunk.index_of.empty()) {
+        return false;
+      }
+    }
+    // Without statistics nobody knows of messages outside of chunks; without an index nobody finds those in chunks.
+    const bool has_messages =
+        std::any_of(counts_.begin(), counts_.end(), [](const auto& count) { return count.second > 0; });
+    return has_counts_ && (!has_messages || !chunks_.empty());
+  }
+
+  void add_chunk_index(std::span<const std::byte> contents) {
+    McapContents in(contents, "a chunk index");
+    static_cast<void>(in.number<std::uint64_t>("message_start_time"));
+    static_cast<void>(in.number<std::uint64_t>("message_end_time"));
+    ChunkPlace place;
+    place.position = in.number<std::uint64_t>("chunk_start_offset");
+    static_cast<void>(in.number<std::uint64_t>("chunk_length"));
+    for (McapContents offsets = in.list("message_index_offsets"); offsets.left() > 0;) {
+      const auto channel = offsets.number<std::uint16_t>("channel");
+      place.index_of[channel] = offsets.number<std::uint64_t>("offset");
+    }
+    chunks_.push_back(std::move(place));
+  }
+
+  void add_statistics(std::span<const std::byte> contents) {
+    McapContents in(contents, "the statistics");
+    static_cast<void>(in.bytes(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8, "counts"));
+    for (McapContents counts = in.list("channel_message_counts"); counts.left() > 0;) {
+      const auto channel = counts.number<std::uint16_t>("channel");
+      counts_[channel] = counts.number<std::uint64_t>("count");
+    }
+    has_counts_ = true;
+  }
+
+  // From the beginning.
+
+  /// All records up to the end, or to where the file is cut.
+  void scan() {
+    chunks_.clear();
+    loose_.clear();
+    std::uint64_t at = kMcapMagic.size();
+    for (;;) {
+      if (size_ - at < kMcapRecordHead) {
+        note("it ends at byte " + std::to_string(size_) + " without the mark of its end");
+        return;
+      }
+      const Head head = head_at(at);
+      if (head.opcode == 0 || !fits(at, head)) {
+        note("it ends at byte " + std::to_string(size_) + " within the record at byte " + std::to_string(at) +
+             "; what is before it is read");
+        return;
+      }
+      if (!scan_record(at, head)) {
+        if (!has_end_) {
+          note("it ends at byte " + std::to_string(size_) + " within its summary; its messages are all there");
+        }
+        return;
+      }
+      at += kMcapRecordHead + head.length;
+    }
+  }
+
+  /// False at the end of the data.
+  bool scan_record(std::uint64_t at, const Head& head) {
+    switch (static_cast<McapOpcode>(head.opcode)) {
+      case McapOpcode::header:
+      case McapOpcode::schema:
+      case McapOpcode::channel: {
+        read_at(at + kMcapRecordHead, checked_length(at, head), record_);
+        take_description({.opcode = static_cast<McapOpcode>(head.opcode), .contents = record_});
+        return true;
+      }
+      case McapOpcode::message:
+        if (head.length >= kMcapMessageHead) {
+          loose_.push_back(at);
+        }
+        return true;
+      case McapOpcode::chunk: {
+        std::span<const std::byte> records = chunk_at(at).records;
+        while (!records.empty()) {
+          take_description(take_mcap_record(records, name_ + ": chunk at byte " + std::to_string(at)));
+        }
+        chunks_.push_back({.position = at, .index_of = {}});
+        return true;
+      }
+      case McapOpcode::data_end:
+      case McapOpcode::footer:
+        return false;
+      default:
+        return true;
+    }
+  }
+
+  void take_description(const McapRecord& record) {
+    if (record.opcode == McapOpcode::header) {
+      add_header(record.contents);
+    } else if (record.opcode == McapOpcode::schema) {
+      add_schema(record.contents);
+    } else if (record.opcode == McapOpcode::channel) {
+      add_channel(record.contents);
+    }
+  }
+
+  // Messages.
+
+  /// Throws where the index is broken, or does not list as many as the statistics count.
+  [[nodiscard]] std::vector<McapEntry> listed_by_index(const std::set<std::uint16_t>& wanted) {
+    std::vector<McapEntry> found = listed(wanted);
+    std::uint64_t counted = 0;
+    for (const std::uint16_t channel : wanted) {
+      const auto count = counts_.find(channel);
+      counted += count == counts_.end() ? 0 : count->second;
+    }
+    if (found.size() != counted) {
+      fail("it lists ", found.size(), " messages, the statistics count ", counted);
+    }
+    return found;
+  }
+
+  [[nodiscard]] std::vector<McapEntry> listed(const std::set<std::uint16_t>& wanted) {
+    std::vector<McapEntry> found;
+    for (const ChunkPlace& chunk : chunks_) {
+      if (chunk.index_of.empty()) {
+        look_through(chunk.position, wanted, found);
+      } else {
+        take_index(chunk, wanted, found);
+      }
+      if (found.size() > kMostMcapMessages) {
+        fail(name_, ": has more than ", kMostMcapMessages, " messages of the topics asked for; cut it into parts");
+      }
+    }
+    for (const std::uint64_t position : loose_) {
+      read_at(position + kMcapRecordHead, kMcapMessageHead, record_);
+      add_entry({.position = position}, record_, wanted, found);
+    }
+    return found;
+  }
+
+  void add_entry(McapEntry entry, std::span<const std::byte> contents, const std::set<std::uint16_t>& wanted,
+                 std::vector<McapEntry>& found) const {
+    McapContents in(contents, name_);
+    entry.channel = in.number<std::uint16_t>("channel");
+    static_cast<void>(in.number<std::uint32_t>("sequence"));
+    entry.log_time_ns = in.number<std::uint64_t>("log_time");
+    if (wanted.contains(entry.channel)) {
+      found.push_back(entry);
+    }
+  }
+
+  void look_through(std::uint64_t position, const std::set<std::uint16_t>& wanted, std::vector<McapEntry>& found) {
+    const std::vector<std::byte>& records = chunk_at(position).records;
+    for (std::span<const std::byte> rest(records); !rest.empty();) {
+      const std::uint64_t offset = records.size() - rest.size();
+      const McapRecord record = take_mcap_record(rest, name_ + ": chunk at byte " + std::to_string(position));
+      if (record.opcode == McapOpcode::message) {
+        add_entry({.position = position, .offset = offset, .in_chunk = true}, record.contents, wanted, found);
+      }
+    }
+  }
+
+  void take_index(const ChunkPlace& chunk, const std::set<std::uint16_t>& wanted, std::vector<McapEntry>& found) {
+    const std::size_t begin = found.size();
+    for (const auto& [channel, position] : chunk.index_of) {
+      if (!wanted.contains(channel)) {
+        continue;
+      }
+      const Head head = head_at(position);
+      if (head.opcode != static_cast<std::uint8_t>(McapOpcode::message_index)) {
+        fail(name_, ": the index is broken: there is no message index at byte ", position);
+      }
+      read_at(position + kMcapRecordHead, checked_length(position, head), record_);
+      McapContents in(record_, name_);
+      if (in.number<std::uint16_t>("channel") != channel) {
+        fail(name_, ": the index is broken: the message index at byte ", position, " is not of channel ", channel);
+      }
+      for (McapContents entries = in.list("records"); entries.left() > 0;) {
+        McapEntry entry{.position = chunk.position, .channel = channel, .in_chunk = true};
+        entry.log_time_ns = entries.number<std::uint64_t>("log_time");
+        entry.offset = entries.number<std::uint64_t>("offset");
+        found.push_back(entry);
+      }
+    }
+    std::sort(found.begin() + static_cast<std::ptrdiff_t>(begin), found.end(),
+              [](const McapEntry& a, const McapEntry& b) { return a.offset < b.offset; });
+  }
+
+  // Chunks.
+
+  /// Decompressed, its CRC checked; valid until the next call.
+  [[nodiscard]] const Chunk& chunk_at(std::uint64_t position) {
+    const auto kept =
+        std::find_if(kept_.begin(), kept_.end(), [position](const Chunk& chunk) { return chunk.position == position; });
+    if (kept != kept_.end()) {
+      std::rotate(kept, kept + 1, kept_.end());  // the newest is last
+      return kept_.back();
+    }
+    const Head head = head_at(position);
+    const std::string where = name_ + ": chunk at byte " + std::to_string(position);
+    if (head.opcode != static_cast<std::uint8_t>(McapOpcode::chunk)) {
+      fail(name_, ": the index is broken: there is no chunk at byte ", position);
+    }
+    read_at(position + kMcapRecordHead, checked_length(position, head), raw_chunk_);
+    McapContents in(raw_chunk_, where);
+    static_cast<void>(in.bytes(2 * sizeof(std::uint64_t), "times"));
+    const auto size = in.number<std::uint64_t>("uncompressed_size");
+    const auto crc = in.number<std::uint32_t>("uncompressed_crc");
+    const std::string_view compression = in.text("compression");
+    const std::span<const std::byte> data = in.bytes(in.number<std::uint64_t>("records"), "records");
+    if (size > kLargestMcapChunk) {
+      fail(where, ": has ", size, " bytes decompressed, must have at most ", kLargestMcapChunk);
+    }
+    Chunk chunk;
+    if (kept_.size() == kChunksKept) {
+      chunk = std::move(kept_.front());  // its memory is used again
+      kept_.erase(kept_.begin());
+    }
+    chunk.position = position;
+    mcap_decompress(compression, data, static_cast<std::size_t>(size), chunk.records, where);
+    if (crc != 0 && mcap_crc(chunk.records) != crc) {
+      fail(where, ": its CRC is wrong: the file is damaged");
+    }
+    kept_.push_back(std::move(chunk));
+    return kept_.back();
+  }
+
+  std::string name_;
+  std::string profile_;
+  std::string damage_;
+  std::vector<McapChannel> channels_;
+  InputStream stream_;
+  std::uint64_t size_ = 0;
+  bool by_index_ = false;
+  bool has_counts_ = false;                        ///< there are statistics
+  bool has_end_ = false;                           ///< the file's last bytes are those of an end
+  std::map<std::uint16_t, std::uint64_t> counts_;  ///< messages a channel, by the statistics
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Channel> by_id_;
+  std::vector<ChunkPlace> chunks_;
+  std::vector<std::uint64_t> loose_;  ///< messages outside of chunks
+  std::vector<Chunk> kept_;
+  std::vector<std::byte> head_;
+  std::vector<std::byte> record_;
+  std::vector<std::byte> raw_chunk_;
+};
+
+McapReader::McapReader(const std::filesystem::path& file) : file_(std::make_unique<File>(file)) {}
+McapReader::~McapReader() = default;
+McapReader::McapReader(McapReader&&) noexcept = default;
+McapReader& McapReader::operator=(McapReader&&) noexcept = default;
+
+std::span<const McapChannel> McapReader::channels() const noexcept { return file_->channels(); }
+
+const McapChannel* McapReader::channel(std::string_view topic) const noexcept {
+  for (const McapChannel& channel : file_->channels()) {
+    if (channel.topic == topic) {
+      return &channel;
+    }
+  }
+  return nullptr;
+}
+
+const std::string& McapReader::profile() const noexcept { return file_->profile(); }
+const std::string& McapReader::damage() const noexcept { return file_->damage(); }
+std::vector<McapEntry> McapReader::entries(std::span<const std::uint16_t> channels) { return file_->entries(channels); }
+McapMessage McapReader::read(const McapEntry& entry) { return file_->read(entry); }
+
+}  // namespace depthgrid::files
