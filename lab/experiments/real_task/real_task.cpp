@@ -20,6 +20,7 @@ using nlohmann::ordered_json;
 namespace {
 
 constexpr int kEvaluateEvery = 4;  ///< periods: 8 ms
+constexpr double kMoved = 0.01;    ///< sides; with less done there is no ratio
 
 struct Task {
   std::string name;
@@ -96,8 +97,8 @@ void run_real_task(const Options& options, ExperimentReport& report) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(i);
     const Task real{"nobody, " + std::string(sensor),
                     run_avoidance(Method::search_memory, model, nobody(alone_s), with(sensor, alone_s, seed))};
-    alone.push_back(real.run.summary.task_share > 0 ? free.run.summary.task_share / real.run.summary.task_share
-                                                    : std::numeric_limits<double>::infinity());
+    alone.push_back(real.run.summary.task_share > kMoved ? free.run.summary.task_share / real.run.summary.task_share
+                                                         : std::numeric_limits<double>::infinity());
     add_task(real, seed, table, report.figures()["nobody"]);
     step();
     const AvoidanceMotion motion = carrying_person(avoidance_rig(2, width_px, "ideal"), person_s, seed + 1);
@@ -109,7 +110,7 @@ void run_real_task(const Options& options, ExperimentReport& report) {
                       run_avoidance(Method::search_memory, model, motion, with(sensor, person_s, seed))};
     add_task(beside, seed, table, report.figures()["person"]);
     step();
-    if (ideal.run.summary.task_share > 0) {
+    if (ideal.run.summary.task_share > kMoved) {
       beside_ideal.push_back(beside.run.summary.task_share / ideal.run.summary.task_share);
     }
     contacts_caused += caused(beside.run.summary);
