@@ -12,11 +12,17 @@
 #include <cstdint>
 
 #include "depthgrid/memory/block_voxels-inl.hpp"
+#include "depthgrid/memory/blocking_pixels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace depthgrid::memory::HWY_NAMESPACE {
 
 using namespace views::octants::HWY_NAMESPACE;
+
+/// More than is rounded off a sum of a few products, in terms of the largest.
+constexpr float kRoundedOff = 2e-6F;
+/// A ray that is asked stays so far within its pixel.
+constexpr float kInPixel = 0.01F;
 
 /// Voxels that are not free because what is behind their centres is not, as far as every ball reaches. `least_m` and
 /// `range_m`: no ball is smaller, and no centre farther.
@@ -124,12 +130,83 @@ HWY_INLINE Block pixel_shows_not_free(const views::LocalCamera& camera, const Pl
   });
 }
 
+/// Voxels that are not free because the pixel is not that showed it last.
+HWY_INLINE Block blocking_pixels_show_not_free(const views::LocalCamera& camera, const Places& places, Block asked,
+                                               float least_m, const std::int16_t* HWY_RESTRICT offsets) {
+  const lanes::HWY_NAMESPACE::Floats d;
+  const lanes::HWY_NAMESPACE::Ints di;
+  const hn::Rebind<std::int16_t, lanes::HWY_NAMESPACE::Floats> narrow;
+  const auto one = hn::Set(d, 1.0F);
+  const auto zero = hn::Zero(d);
+  const auto zero_px = hn::Zero(di);
+  const auto last_u = hn::Set(di, camera.width_px - 1);
+  const auto last_v = hn::Set(di, camera.image->free_m.height_px() - 1);
+  const auto square = hn::Set(d, std::max(least_m, 0.0F) * std::max(least_m, 0.0F));
+  const auto in_pixel = hn::Set(d, kInPixel);
+  const auto to_end = hn::Set(d, 1 - kInPixel);
+  constexpr std::size_t kLayer = 16;
+  Block result = 0;
+  for (std::size_t at = 0; at < BlockingPixels::kVoxels; at += hn::Lanes(d)) {
+    if (((asked >> at) & ((1U << hn::Lanes(d)) - 1U)) == 0) {
+      continue;
+    }
+    const Layer p = layer_of(places, at % kLayer, at / kLayer);
+    const auto by_z = hn::Div(one, p.z);
+    const auto u_ball = hn::Add(hn::Mul(hn::Mul(p.x, by_z), hn::Set(d, camera.fx)), hn::Set(d, camera.cx));
+    const auto v_ball = hn::Add(hn::Mul(hn::Mul(p.y, by_z), hn::Set(d, camera.fy)), hn::Set(d, camera.cy));
+    const auto offset = hn::PromoteTo(di, hn::LoadU(narrow, offsets + at));
+    const auto columns = hn::ShiftRight<24>(hn::ShiftLeft<24>(offset));
+    const auto rows = hn::ShiftRight<8>(hn::Sub(offset, columns));
+    const auto pixel = [&](auto middle, float size, auto away, auto last) HWY_ATTR {
+      const auto from = hn::ConvertTo(di, clamp(middle, zero, hn::Set(d, size)));
+      return hn::Min(hn::Max(hn::Add(from, away), zero_px), last);
+    };
+    const auto u = pixel(u_ball, camera.width, columns, last_u);
+    const auto v = pixel(v_ball, camera.height, rows, last_v);
+    const auto index = hn::Add(hn::Mul(v, hn::Set(di, camera.width_px)), u);
+    auto free_m = hn::GatherIndex(d, camera.free_m, index);
+    if (camera.has_islands) {
+      free_m = hn::Max(free_m, hn::GatherIndex(d, camera.image->island_far_m.data(), index));
+    }
+    const auto slope = [&](auto middle, auto begin, float c, float f) HWY_ATTR {
+      const auto nearest = clamp(middle, hn::Add(begin, in_pixel), hn::Add(begin, to_end));
+      return hn::Mul(hn::Sub(nearest, hn::Set(d, c)), hn::Set(d, 1 / f));
+    };
+    const auto right = slope(u_ball, hn::ConvertTo(d, u), camera.cx, camera.fx);
+    const auto down = slope(v_ball, hn::ConvertTo(d, v), camera.cy, camera.fy);
+    const auto along = hn::Div(hn::Add(hn::Add(hn::Mul(right, p.x), hn::Mul(down, p.y)), p.z),
+                               hn::Add(hn::Add(hn::Mul(right, right), hn::Mul(down, down)), one));
+    const auto depth = hn::Max(along, free_m);
+    const auto away = [](auto value) HWY_ATTR { return hn::Mul(value, value); };
+    const auto sum =
+        hn::Add(hn::Add(away(hn::Sub(p.x, hn::Mul(depth, right))), away(hn::Sub(p.y, hn::Mul(depth, down)))),
+                away(hn::Sub(p.z, depth)));
+    result |= static_cast<Block>(lanes::HWY_NAMESPACE::bits_of(hn::Lt(sum, square))) << at;
+  }
+  return result;
+}
+
 /// What the pixels say of one ball; of one that is not free, the pixel that says so.
 struct PixelsSay {
   bool is_free = false;
   bool is_not_free = false;
   int u = 0, v = 0;
   float free_m = 0;
+};
+
+/// How near a ray comes to a point behind a depth, against two distances, without a division. With p . q of the ray
+/// q = (right, down, 1), it is nearest at the depth p . q / q^2, where its square distance is p^2 - (p . q)^2 / q^2.
+struct Approach {
+  lanes::HWY_NAMESPACE::V along, square, begin;  ///< p . q, q^2, and q^2 times the depth from which on it counts
+
+  /// Whether its square distance is below p^2 - rest.
+  [[nodiscard]] HWY_INLINE lanes::HWY_NAMESPACE::M is_within(lanes::HWY_NAMESPACE::V from_m, float rest) const {
+    const lanes::HWY_NAMESPACE::Floats d;
+    const auto limit = hn::Set(d, rest);
+    const auto at_foot = hn::Gt(hn::Mul(along, along), hn::Mul(limit, square));
+    const auto at_begin = hn::Gt(hn::Mul(from_m, hn::Sub(hn::Add(along, along), begin)), limit);
+    return hn::Or(hn::And(hn::Gt(along, begin), at_foot), hn::AndNot(hn::Gt(along, begin), at_begin));
+  }
 };
 
 /// A ball in front of the camera and inside of its image. Pixels that are free as far as its far end do not touch it.
@@ -142,9 +219,8 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
   const int width = camera.width_px;
   const int height = image.free_m.height_px();
   const auto lanes = static_cast<int>(hn::Lanes(d));
-  const int end = width * height - lanes;
-  if (end < 0) {
-    return {};  // fewer pixels than lanes: left to the exact test
+  if (width < lanes) {
+    return {};  // left to the exact test
   }
   const float square = most_m * most_m;
   const float by = 1 / (z * z - square);
@@ -166,33 +242,38 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
   const float by_fy = 1 / camera.fy;
   const float half_pixel_m = 0.7072F * (z + most_m) * std::max(by_fx, by_fy);
   const auto far_end = hn::Set(d, z + most_m);
-  const auto touching = hn::Set(d, std::max(least_m, 0.0F) * std::max(least_m, 0.0F));
-  const auto clear = hn::Set(d, (most_m + half_pixel_m) * (most_m + half_pixel_m));
-  const auto first_column = hn::Set(d, static_cast<float>(first_u));
-  const auto last_column = hn::Set(d, static_cast<float>(last_u));
-  constexpr float kInPixel = 0.01F;
+  const float range = x * x + y * y + z * z;
+  const float nearest = std::max(least_m, 0.0F);
+  const float farthest = most_m + half_pixel_m;
+  const float rest_touching = range * (1 + kRoundedOff) - nearest * nearest;
+  const float rest_clear = range * (1 - kRoundedOff) - farthest * farthest;
   const auto u_ball = hn::Set(d, x / z * camera.fx + camera.cx);
   const float v_ball = y / z * camera.fy + camera.cy;
   const auto x_ball = hn::Set(d, x);
-  const auto y_ball = hn::Set(d, y);
-  const auto z_ball = hn::Set(d, z);
+  const auto in_pixel = hn::Set(d, kInPixel);
+  const auto to_end = hn::Set(d, 1 - kInPixel);
   PixelsSay result;
-  bool is_clear = true;
+  auto unclear = hn::Lt(far_end, far_end);  // none so far
   // From the middle outwards: what is found there says more of other balls.
   const int middle = (first_v + last_v) / 2;
   const int rows = last_v - first_v + 1;
-  for (int n = 0; n < rows; ++n) {
-    const int row = middle + ((n & 1) != 0 ? (n + 1) / 2 : -(n / 2));
-    for (int column = first_u; column <= last_u; column += lanes) {
-      const int at = std::min(row * width + column, end);
+  for (int first = first_u; first <= last_u; first += lanes) {
+    const int column = std::min(first, width - lanes);
+    const auto columns = hn::Iota(d, static_cast<float>(column));
+    const auto asked = hn::And(hn::Ge(columns, hn::Set(d, static_cast<float>(first))),
+                               hn::Le(columns, hn::Set(d, static_cast<float>(last_u))));
+    const auto slope = [&](auto u) HWY_ATTR { return hn::Mul(hn::Sub(u, hn::Set(d, camera.cx)), hn::Set(d, by_fx)); };
+    const auto right_nearest = slope(clamp(u_ball, hn::Add(columns, in_pixel), hn::Add(columns, to_end)));
+    const auto right_middle = slope(hn::Add(columns, hn::Set(d, 0.5F)));
+    const auto along_nearest = hn::Mul(right_nearest, x_ball);
+    const auto along_middle = hn::Mul(right_middle, x_ball);
+    const auto square_nearest = hn::Mul(right_nearest, right_nearest);
+    const auto square_middle = hn::Mul(right_middle, right_middle);
+    for (int n = 0; n < rows; ++n) {
+      const int row = middle + ((n & 1) != 0 ? (n + 1) / 2 : -(n / 2));
+      const int at = row * width + column;
       const auto free_m = hn::LoadU(d, camera.free_m + at);
-      auto near = hn::Le(free_m, far_end);
-      if (hn::AllFalse(d, near)) {
-        continue;
-      }
-      const auto columns = hn::Iota(d, static_cast<float>(at - row * width));
-      const auto top = static_cast<float>(row);
-      near = hn::And(near, hn::And(hn::Ge(columns, first_column), hn::Le(columns, last_column)));
+      const auto near = hn::And(asked, hn::Le(free_m, far_end));
       if (hn::AllFalse(d, near)) {
         continue;
       }
@@ -200,25 +281,22 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
       if (camera.has_islands) {
         most_free_m = hn::Max(most_free_m, hn::LoadU(d, image.island_far_m.data() + at));
       }
-      const auto distance = [&](auto u, float v, auto from_m) HWY_ATTR {
-        const auto right = hn::Mul(hn::Sub(u, hn::Set(d, camera.cx)), hn::Set(d, by_fx));
-        const auto down = hn::Set(d, (v - camera.cy) * by_fy);
-        const auto along = hn::Div(hn::Add(hn::Add(hn::Mul(right, x_ball), hn::Mul(down, y_ball)), z_ball),
-                                   hn::Add(hn::Add(hn::Mul(right, right), hn::Mul(down, down)), hn::Set(d, 1.0F)));
-        const auto depth = hn::Max(along, from_m);
-        const auto off_x = hn::Sub(x_ball, hn::Mul(depth, right));
-        const auto off_y = hn::Sub(y_ball, hn::Mul(depth, down));
-        const auto off_z = hn::Sub(z_ball, depth);
-        return hn::Add(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Mul(off_z, off_z));
+      const auto approach = [&](auto along, auto right_square, float v, auto from_m) HWY_ATTR {
+        const float down = (v - camera.cy) * by_fy;
+        const auto ray_square = hn::Add(right_square, hn::Set(d, down * down + 1));
+        return Approach{hn::Add(along, hn::Set(d, y * down + z)), ray_square, hn::Mul(ray_square, from_m)};
       };
-      const auto nearest_u =
-          hn::Min(hn::Max(u_ball, hn::Add(columns, hn::Set(d, kInPixel))), hn::Add(columns, hn::Set(d, 1 - kInPixel)));
-      const float nearest_v = std::min(std::max(v_ball, top + kInPixel), top + 1 - kInPixel);
-      const auto found = hn::And(near, hn::Lt(distance(nearest_u, nearest_v, most_free_m), touching));
+      const auto top = static_cast<float>(row);
+      const float v_nearest = std::min(std::max(v_ball, top + kInPixel), top + 1 - kInPixel);
+      const auto found = hn::And(
+          near, approach(along_nearest, square_nearest, v_nearest, most_free_m).is_within(most_free_m, rest_touching));
+      unclear = hn::Or(
+          unclear,
+          hn::And(near, approach(along_middle, square_middle, top + 0.5F, free_m).is_within(free_m, rest_clear)));
       if (!hn::AllFalse(d, found)) {
         const auto lane = std::countr_zero(lanes::HWY_NAMESPACE::bits_of(found));
         result.is_not_free = true;
-        result.u = at - row * width + lane;
+        result.u = column + lane;
         result.v = row;
         result.free_m = camera.free_m[at + lane];
         if (camera.has_islands) {
@@ -226,32 +304,37 @@ HWY_INLINE PixelsSay look_at_pixels(const views::LocalCamera& camera, float x, f
         }
         return result;
       }
-      is_clear = is_clear &&
-                 hn::AllFalse(
-                     d, hn::And(near, hn::Le(distance(hn::Add(columns, hn::Set(d, 0.5F)), top + 0.5F, free_m), clear)));
     }
   }
-  result.is_free = is_clear;
+  result.is_free = hn::AllFalse(d, unclear);
   return result;
 }
 
 /// Voxel by voxel, all whose balls lie in front of the camera and inside of its image: what is not free is taken from
 /// `open`, and what is from it, too, and returned.
 HWY_INLINE Block look_at_voxels(const views::LocalCamera& camera, const Places& places, float least_m, float most_m,
-                                Block& open) {
+                                std::int16_t* blocking, Block& open) {
+  open &= ~blocking_pixels_show_not_free(camera, places, open, least_m, blocking);
+  if (open == 0) {
+    return 0;
+  }
   Block freed = rectangle_shows_free(camera, places, open, most_m) & open;
   open &= ~freed;
   Block undecided = 0;
   while (open != 0) {
     const int bit = std::countr_zero(open);
-    const auto at = [&](const Slope& slope) {
-      return slope.first + static_cast<float>(bit & 3) * slope.x + static_cast<float>((bit >> 2) & 3) * slope.y +
-             static_cast<float>(bit >> 4) * slope.z;
-    };
-    const PixelsSay said = look_at_pixels(camera, at(places[0]), at(places[1]), at(places[2]), least_m, most_m);
+    const Place p = place_of(places, bit);
+    const PixelsSay said = look_at_pixels(camera, p.x, p.y, p.z, least_m, most_m);
     open &= ~(Block{1} << bit);
     if (said.is_not_free) {
-      open &= ~pixel_shows_not_free(camera, places, open, least_m, said.u, said.v, said.free_m);
+      const Block others = pixel_shows_not_free(camera, places, open, least_m, said.u, said.v, said.free_m) & open;
+      open &= ~others;
+      for (Block rest = others | Block{1} << bit; rest != 0; rest &= rest - 1) {
+        const int voxel = std::countr_zero(rest);
+        const Place q = place_of(places, voxel);
+        blocking[voxel] = BlockingPixels::offset(said.u - static_cast<int>(q.x / q.z * camera.fx + camera.cx),
+                                                 said.v - static_cast<int>(q.y / q.z * camera.fy + camera.cy));
+      }
     } else if (said.is_free) {
       freed |= Block{1} << bit;
     } else {

@@ -55,6 +55,18 @@ HWY_INLINE Slope slope_in_block(const views::LocalCamera& camera, float voxel_m,
 
 /// Where the voxels of a block are in the camera's frame, a layer at a time.
 using Places = std::array<Slope, 3>;
+/// One of them.
+struct Place {
+  float x, y, z;
+};
+HWY_INLINE Place place_of(const Places& places, int voxel) {
+  const auto at = [&](const Slope& slope) {
+    return slope.first + static_cast<float>(voxel & 3) * slope.x + static_cast<float>((voxel >> 2) & 3) * slope.y +
+           static_cast<float>(voxel >> 4) * slope.z;
+  };
+  return {at(places[0]), at(places[1]), at(places[2])};
+}
+
 struct Layer {
   lanes::HWY_NAMESPACE::V x, y, z;
 };

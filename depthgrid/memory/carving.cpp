@@ -16,21 +16,22 @@ constexpr std::size_t kChunk = 32;
 
 class Carving {
  public:
-  Carving(const Carver& carver, VoxelSet& voxels) noexcept
+  Carving(const Carver& carver, BlockingPixels& blocking, VoxelSet& voxels) noexcept
       : carver_(carver),
+        blocking_(blocking),
         voxels_(voxels),
         corner_m_(voxels.low_world() - carver.origin_world),
         voxel_m_(voxels.voxel_m()) {}
 
   std::int64_t run() noexcept {
     const std::array<int, 3>& count = voxels_.blocks(0);
-    Block* blocks = voxels_.voxel_blocks().data();
+    std::size_t block = 0;
     for (int z = 0; z < count[2]; ++z) {
       for (int y = 0; y < count[1]; ++y) {
         for (int x = 0; x < count[0]; x += static_cast<int>(kChunk)) {
           const auto here = std::min(static_cast<std::size_t>(count[0] - x), kChunk);
-          see_blocks(x, y, z, blocks, here);
-          blocks += here;
+          see_blocks(x, y, z, block, here);
+          block += here;
         }
       }
     }
@@ -41,15 +42,16 @@ class Carving {
   }
 
  private:
-  void see_blocks(int x, int y, int z, Block* blocks, std::size_t count) noexcept {
+  void see_blocks(int x, int y, int z, std::size_t first, std::size_t count) noexcept {
+    Block* const blocks = voxels_.voxel_blocks().data() + first;
     if (std::all_of(blocks, blocks + count, [](Block block) { return block == 0; })) {
       return;
     }
     const Eigen::Vector3d low_m = corner_m_ + 4 * voxel_m_ * Eigen::Vector3d(x, y, z);
     const Eigen::Vector3f middle = (low_m + Eigen::Vector3d::Constant(2 * voxel_m_)).cast<float>();
     std::array<Block, kChunk> open;  // NOLINT(*-member-init): written by see_row()
-    removed_ += see_row(carver_,
-                        {middle.x(), middle.y(), middle.z(), static_cast<float>(voxel_m_), count, blocks, open.data()});
+    removed_ += see_row(carver_, {middle.x(), middle.y(), middle.z(), static_cast<float>(voxel_m_), count, blocks,
+                                  open.data(), blocking_.of_block(first)});
     for (std::size_t i = 0; i < count; ++i) {
       for (Block rest = open[i]; rest != 0; rest &= rest - 1) {
         const int bit = std::countr_zero(rest);
@@ -69,6 +71,7 @@ class Carving {
   }
 
   const Carver& carver_;
+  BlockingPixels& blocking_;
   VoxelSet& voxels_;
   Eigen::Vector3d corner_m_;
   double voxel_m_;
@@ -107,6 +110,8 @@ Carver make_carver(const views::Snapshot& snapshot, std::size_t camera, double l
   return carver;
 }
 
-std::int64_t carve(const Carver& carver, VoxelSet& voxels) noexcept { return Carving(carver, voxels).run(); }
+std::int64_t carve(const Carver& carver, BlockingPixels& blocking, VoxelSet& voxels) noexcept {
+  return Carving(carver, blocking, voxels).run();
+}
 
 }  // namespace depthgrid::memory

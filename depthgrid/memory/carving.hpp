@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "depthgrid/memory/blocking_pixels.hpp"
 #include "depthgrid/memory/depth_planes.hpp"
 #include "depthgrid/memory/possible_space.hpp"
 #include "depthgrid/views/local_camera.hpp"
@@ -38,15 +39,17 @@ struct Carver {
                                  double thinnest_hidden_m) noexcept;
 
 /// Takes out every voxel whose ball is free to the camera, and no other: exactly, up to about 1e-9 m. Returns how many.
-std::int64_t carve(const Carver& carver, VoxelSet& voxels) noexcept;
+/// `blocking`: of this camera and this region.
+std::int64_t carve(const Carver& carver, BlockingPixels& blocking, VoxelSet& voxels) noexcept;
 
 /// A row of blocks of voxels along x, and the middle of the first, relative to the carver's origin.
 struct BlockRow {
   float x_m, y_m, z_m;
   float voxel_m;
   std::size_t count;
-  Block* voxels;  ///< of each block; what is free is taken out
-  Block* open;    ///< written: which of those that are left need the exact test
+  Block* voxels;           ///< of each block; what is free is taken out
+  Block* open;             ///< written: which of those that are left need the exact test
+  std::int16_t* blocking;  ///< see BlockingPixels, of the first block on
 };
 
 /// Takes out what is free as far as single precision tells. Returns how many voxels. What is free after the exact test

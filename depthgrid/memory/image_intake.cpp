@@ -33,8 +33,10 @@ ImageIntake::ImageIntake(const views::ViewStore& views, const MemorySettings& se
   validate(settings);
   const VoxelSet region(settings.low_world, settings.high_world, settings.voxel_m);
   blocks_ = region.voxel_blocks();
+  blocking_.assign(views.rig().cameras.size(), BlockingPixels(blocks_.size()));
   seeds_.readings.reserve(kMostReadings);
   seeds_.row_m = DepthImage(largest(views.rig(), [](const PinholeCamera& c) { return c.width_px; }), 1);
+  seeds_.in_row.resize(static_cast<std::size_t>(seeds_.row_m.width_px()));
 }
 
 void ImageIntake::ignore_before(double time_s) noexcept {
@@ -83,7 +85,7 @@ void ImageIntake::take_one(const views::Snapshot& snapshot, std::size_t camera, 
   }
   planes_.update(views::prepared(view), snapshot.camera(camera).intrinsics);
   const Carver carver = make_carver(snapshot, camera, late_s, planes_, space, thinnest_hidden_m_);
-  if (carve(carver, space.voxels) > 0) {
+  if (carve(carver, blocking_[camera], space.voxels) > 0) {
     space.is_everything = false;
   }
   const CameraMargins& margins = snapshot.settings().margins[camera];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "depthgrid/memory/blocking_pixels.hpp"
 #include "depthgrid/memory/depth_planes.hpp"
 #include "depthgrid/memory/history.hpp"
 #include "depthgrid/memory/possible_space.hpp"
@@ -39,6 +40,7 @@ class ImageIntake {
   double ignored_before_s_;
   std::array<std::uint64_t, views::kMaxCameras> taken_{};  ///< versions
   DepthPlanes planes_;
+  std::vector<BlockingPixels> blocking_;  ///< a camera each
   std::vector<Block> blocks_;
   SeedScratch seeds_;
 };

@@ -33,12 +33,43 @@ bool shows_free(const views::PreparedImage& image, const SensorMargin& sensor, i
           depth_m - margin_m <= image.island_far_m.at(u, v));
 }
 
-/// A straight line over a row of pixels: where depth 1 lies, in voxels.
-struct Line {
-  float first, step;
-
-  [[nodiscard]] float at(float u) const noexcept { return first + u * step; }
+/// The pixels in which the region is seen, or all of them where it begins behind the camera or right before it.
+struct Seen {
+  int first_u, end_u, first_v, end_v;
 };
+
+Seen pixels_of(const VoxelSet& voxels, const PinholeCamera& c, const Pose& T_world_camera) noexcept {
+  constexpr double kNearest_m = 0.05;
+  constexpr double kBeside_px = 2;
+  double low_u = c.width_px;
+  double high_u = 0;
+  double low_v = c.height_px;
+  double high_v = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d x((corner & 1) != 0 ? voxels.high_world().x() : voxels.low_world().x(),
+                     (corner & 2) != 0 ? voxels.high_world().y() : voxels.low_world().y(),
+                     (corner & 4) != 0 ? voxels.high_world().z() : voxels.low_world().z());
+    const Vector3d p = T_world_camera.linear().transpose() * (x - T_world_camera.translation());
+    if (!(p.z() > kNearest_m)) {
+      return {0, c.width_px, 0, c.height_px};
+    }
+    const double u = c.fx_px * p.x() / p.z() + c.cx_px;
+    const double v = c.fy_px * p.y() / p.z() + c.cy_px;
+    low_u = std::min(low_u, u - kBeside_px);
+    high_u = std::max(high_u, u + kBeside_px);
+    low_v = std::min(low_v, v - kBeside_px);
+    high_v = std::max(high_v, v + kBeside_px);
+  }
+  const auto pixel = [](double at, int end) { return static_cast<int>(std::clamp(at, 0.0, double{1} * end)); };
+  return {pixel(low_u, c.width_px), pixel(high_u + 1, c.width_px), pixel(low_v, c.height_px),
+          pixel(high_v + 1, c.height_px)};
+}
+
+/// The first of every n-th pixel that is not before this one.
+int first_from(int pixel, int stride_px) noexcept {
+  const int begin = stride_px / 2;
+  return pixel <= begin ? begin : begin + (pixel - begin + stride_px - 1) / stride_px * stride_px;
+}
 
 /// Readings of an image that lie in voxels which are not in the set.
 void gather(const views::View& view, const PinholeCamera& c, const SensorMargin& sensor, int stride_px,
@@ -48,37 +79,28 @@ void gather(const views::View& view, const PinholeCamera& c, const SensorMargin&
   // In voxels from the region's corner.
   const Eigen::Vector3f origin = ((T.translation() - voxels.low_world()) / voxels.voxel_m()).cast<float>();
   const Eigen::Matrix3d axes = T.linear() / voxels.voxel_m();
-  const std::array<int, 3>& count = voxels.voxels();
-  const auto nx = static_cast<float>(count[0]);
-  const auto ny = static_cast<float>(count[1]);
-  const auto nz = static_cast<float>(count[2]);
+  const Seen seen = pixels_of(voxels, c, T);
   std::vector<std::uint64_t>& found = scratch.readings;
-  for (int v = stride_px / 2; v < c.height_px; v += stride_px) {
+  for (int v = first_from(seen.first_v, stride_px); v < seen.end_v; v += stride_px) {
     DepthImage& row_m = scratch.row_m;
     view.measured_row(v, row_m);
-    const Vector3d begin =
-        axes.col(2) + axes.col(1) * ((v + 0.5 - c.cy_px) / c.fy_px) + axes.col(0) * ((0.5 - c.cx_px) / c.fx_px);
-    const Vector3d step = axes.col(0) / c.fx_px;
-    const Line along_x{static_cast<float>(begin.x()), static_cast<float>(step.x())};
-    const Line along_y{static_cast<float>(begin.y()), static_cast<float>(step.y())};
-    const Line along_z{static_cast<float>(begin.z()), static_cast<float>(step.z())};
-    for (int u = stride_px / 2; u < c.width_px; u += stride_px) {
-      const float depth_m = row_m.at(u, 0);
-      const auto column = static_cast<float>(u);
-      const float x = origin.x() + depth_m * along_x.at(column);
-      const float y = origin.y() + depth_m * along_y.at(column);
-      const float z = origin.z() + depth_m * along_z.at(column);
-      if (!(depth_m > 0 && x >= 0 && y >= 0 && z >= 0 && x < nx && y < ny && z < nz)) {
-        continue;
-      }
-      const auto i = static_cast<int>(x);
-      const auto j = static_cast<int>(y);
-      const auto k = static_cast<int>(z);
-      if (!voxels.contains(i, j, k) && found.size() < found.capacity()) {
-        const std::uint64_t key = static_cast<std::uint64_t>(i) | static_cast<std::uint64_t>(j) << kBits |
-                                  static_cast<std::uint64_t>(k) << (2 * kBits);
-        found.push_back(key | (shows_free(image, sensor, u, v, depth_m) ? kFree : 0));
-      }
+    const Eigen::Vector3f begin =
+        (axes.col(2) + axes.col(1) * ((v + 0.5 - c.cy_px) / c.fy_px) + axes.col(0) * ((0.5 - c.cx_px) / c.fx_px))
+            .cast<float>();
+    const Eigen::Vector3f step = (axes.col(0) / c.fx_px).cast<float>();
+    const RowOfReadings row{row_m.data(),
+                            first_from(seen.first_u, stride_px),
+                            seen.end_u,
+                            stride_px,
+                            {origin.x(), origin.y(), origin.z()},
+                            {begin.x(), begin.y(), begin.z()},
+                            {step.x(), step.y(), step.z()}};
+    const std::size_t count = readings_outside(row, voxels, scratch.in_row.data());
+    for (std::size_t n = 0; n < count && found.size() < found.capacity(); ++n) {
+      const ReadingOutside& at = scratch.in_row[n];
+      const std::uint64_t key = static_cast<std::uint64_t>(at.x) | static_cast<std::uint64_t>(at.y) << kBits |
+                                static_cast<std::uint64_t>(at.z) << (2 * kBits);
+      found.push_back(key | (shows_free(image, sensor, at.u, v, row_m.at(at.u, 0)) ? kFree : 0));
     }
   }
 }

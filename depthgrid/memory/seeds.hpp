@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "depthgrid/memory/possible_space.hpp"
+#include "depthgrid/memory/readings_outside.hpp"
 #include "depthgrid/views/view_store.hpp"
 
 namespace depthgrid::memory {
@@ -17,7 +18,8 @@ inline constexpr int kFewestReadings = 2;
 /// What put_back() writes into, allocated once. The capacity of `readings` bounds how many count.
 struct SeedScratch {
   std::vector<std::uint64_t> readings;
-  DepthImage row_m;  ///< as wide as the widest image
+  DepthImage row_m;                    ///< as wide as the widest image
+  std::vector<ReadingOutside> in_row;  ///< as many as it has pixels
 };
 
 struct Seeded {

@@ -86,7 +86,7 @@ struct BlockSeen {
 /// Block i of eight, of which something may be free and something not: voxel by voxel.
 HWY_INLINE BlockSeen look_into_block(const views::LocalCamera& camera, const std::array<Border, kBorders>& borders,
                                      const EightBlocks& eight, std::size_t i, float voxel_m, Block voxels,
-                                     bool is_inside, bool is_in_front) {
+                                     std::int16_t* blocking, bool is_inside, bool is_in_front) {
   BlockSeen seen{0, voxels};
   Block within = kWholeBlock;
   if (!is_inside) {
@@ -117,7 +117,7 @@ HWY_INLINE BlockSeen look_into_block(const views::LocalCamera& camera, const std
     Block rest_inside = seen.open & within;
     seen.open &= ~rest_inside;
     if (rest_inside != 0) {
-      seen.freed |= look_at_voxels(camera, places, eight.least[i], eight.most[i], rest_inside);
+      seen.freed |= look_at_voxels(camera, places, eight.least[i], eight.most[i], blocking, rest_inside);
     }
     seen.open |= rest_inside;
   }
@@ -246,6 +246,7 @@ std::int64_t look_at_row(const Carver& carver, const BlockRow& row) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       Block& voxels = row.voxels[begin + i];
       const BlockSeen seen = look_into_block(camera, borders, eight, i, row.voxel_m, voxels,
+                                             row.blocking + BlockingPixels::kVoxels * (begin + i),
                                              ((is_inside >> i) & 1U) != 0, ((is_in_front >> i) & 1U) != 0);
       removed += std::popcount(seen.freed);
       voxels &= ~seen.freed;

@@ -153,7 +153,8 @@ void compare(Random& random, Tally& tally) {
   expect_planes_hold(image, scene.camera.intrinsics, planes);
   const Carver carver = make_carver(snapshot, 0, 0, planes, space, 0);
   VoxelSet voxels = space.voxels;
-  const std::int64_t removed = carve(carver, voxels);
+  BlockingPixels blocking(voxels.voxel_blocks().size());
+  const std::int64_t removed = carve(carver, blocking, voxels);
   EXPECT_EQ(removed, space.voxels.count() - voxels.count());
   int missing = 0;
   int left = 0;
