@@ -18,9 +18,10 @@ FramesBetween::FramesBetween(StagedCell& stage, MethodComparison& comparison, Mo
     : stage_(stage), comparison_(comparison), move_(move), next_s_(first_instant_s - kSeenBefore_s) {}
 
 void FramesBetween::play_until(double instant_s) {
-  for (; comparison_.remembers() && next_s_ < instant_s - 0.5 * kFramePeriod_s; next_s_ += kFramePeriod_s) {
+  while (comparison_.remembers() && next_s_ < instant_s - 0.5 * kFramePeriod_s) {
     (stage_.*move_)(next_s_);
     comparison_.pass(stage_, next_s_, kPassedFrom + passed_++);
+    next_s_ += kFramePeriod_s;
   }
   next_s_ = instant_s + kFramePeriod_s;
 }
