@@ -246,25 +246,16 @@ std::unique_ptr<Output> call(std::function<void(const CellAnswer&)> function) {
 }
 
 std::string event_line(const Event& event, const Names& names) {
-  const std::string who = event.camera < names.cameras.size() ? names.cameras[event.camera] : "joints";
-  const std::string words(event.words());
-  switch (event.kind) {
-    case EventKind::source_open:
-      return who + ": open: " + words;
-    case EventKind::source_failed:
-      return who + ": " + words;
-    case EventKind::source_ended:
-      return who + ": " + words;
-    case EventKind::camera_state:
-      return who + ": " + std::string(to_string(event.state)) + ": " + words;
-    case EventKind::stop:
-    case EventKind::go: {
-      std::array<char, 640> buffer{};
-      return std::string(event.kind == EventKind::stop ? "stop: " : "go: ") +
-             std::string(sentence(event.reason, names, buffer));
-    }
+  if (event.kind == EventKind::stop || event.kind == EventKind::go) {
+    std::array<char, 640> buffer{};
+    return std::string(event.kind == EventKind::stop ? "stop: " : "go: ") +
+           std::string(sentence(event.reason, names, buffer));
   }
-  return who;
+  const std::string who = event.camera < names.cameras.size() ? names.cameras[event.camera] : "joints";
+  const std::string what = event.kind == EventKind::source_open    ? "open: "
+                           : event.kind == EventKind::camera_state ? std::string(to_string(event.state)) + ": "
+                                                                   : "";
+  return who + ": " + what + std::string(event.words());
 }
 
 }  // namespace depthgrid::monitor

@@ -24,7 +24,8 @@ TEST(Agreement, SuggestsAPoseMarginForWhatTheMarginsDoNotExplain) {
   for (const auto& [a_m, b_m, left_m] :
        {std::array{0.0, 0.0, 0.1}, std::array{0.01, 0.03, 0.06}, std::array{0.2, 0.0, 0.0}}) {
     PairAgreement agreement;
-    add_pair(wall(1.9F), wall(2.0F), kCamera, Eigen::Isometry3d::Identity(), 4.0, 1, {a_m, 0, 0, 0}, {b_m, 0, 0, 0}, agreement);
+    add_pair(wall(1.9F), wall(2.0F), kCamera, Eigen::Isometry3d::Identity(), 4.0, 1, {a_m, 0, 0, 0}, {b_m, 0, 0, 0},
+             agreement);
     EXPECT_NEAR(suggested_pose_margin_m(agreement), left_m, 0.002) << a_m << ' ' << b_m;
   }
 }
