@@ -45,10 +45,8 @@ struct MarginEntry {
 
 struct CameraEntry {
   std::string name;
-  SourceKind source = SourceKind::recording;
   std::filesystem::path recording{};          ///< its folder
   std::string recorded_as{};                  ///< the camera's id in it
-  bool repeat = false;                        ///< a recording begins again at its end
   std::string device{};                       ///< serial number, or topic
   double rate_hz = 30;                        ///< of a simulated camera
   std::filesystem::path rig_file{};           ///< says intrinsics and pose of the camera of this name
@@ -57,8 +55,10 @@ struct CameraEntry {
   std::string sensor{};                       ///< a sensor model; empty: the rig file's, or none
   MarginEntry margins{};                      ///< in place of the model's
   double smallest_obstacle_m = 0;             ///< declared
-  bool equal_images = false;                  ///< the same pixels twice in a row are no failure
   std::string place{};                        ///< "FILE:LINE:COLUMN: cameras[0]", for messages
+  SourceKind source = SourceKind::recording;
+  bool repeat = false;        ///< a recording begins again at its end
+  bool equal_images = false;  ///< the same pixels twice in a row are no failure
 };
 
 struct JointsEntry {

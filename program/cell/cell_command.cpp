@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -16,8 +15,8 @@
 #include "depthgrid/core/usable_frame.hpp"
 #include "depthgrid/monitor/open_cell.hpp"
 #include "depthgrid/sensors/clock.hpp"
-#include "program/output_file.hpp"
 #include "program/usage_error.hpp"
+#include "report/number_text.hpp"
 
 namespace depthgrid::program {
 namespace {
@@ -51,12 +50,6 @@ void show(const std::string& file) {
   show_table(values);
 }
 
-std::string fixed_text(const char* format, double value) {
-  std::array<char, 64> text{};
-  (void)std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
 /// One image. Throws Error where there is none.
 void look_at(const std::string& name, sensors::DepthSource& source, const RigCamera& camera) {
   source.open();
@@ -75,8 +68,8 @@ void look_at(const std::string& name, sensors::DepthSource& source, const RigCam
     const double age_s = sensors::clock_now_s() - reading.time_s;
     std::string line = name + ": " + info.name + (info.serial.empty() ? "" : " (" + info.serial + ")") + ", " +
                        std::to_string(reading.depth.width_px) + " x " + std::to_string(reading.depth.height_px) +
-                       " pixels, image of " + fixed_text("%.3f s", reading.time_s) + ", " +
-                       fixed_text("%.1f ms old", 1e3 * age_s) + ", by the clock of " + info.clock;
+                       " pixels, image of " + report::fixed(reading.time_s, 3) + " s" + ", " +
+                       report::fixed(1e3 * age_s, 1) + " ms old" + ", by the clock of " + info.clock;
     if (const char* why = why_unusable(reading.depth, camera.intrinsics)) {
       fail(name, ": its image cannot be used: ", why);
     }
@@ -85,8 +78,8 @@ void look_at(const std::string& name, sensors::DepthSource& source, const RigCam
     const std::size_t pixels =
         static_cast<std::size_t>(measured.width_px()) * static_cast<std::size_t>(measured.height_px());
     const auto none = std::count(measured.data(), measured.data() + pixels, 0.0F);
-    line += fixed_text(", %.1f %% of its pixels have a reading",
-                       100 - 100 * static_cast<double>(none) / static_cast<double>(pixels));
+    line += ", " + report::percent(1 - static_cast<double>(none) / static_cast<double>(pixels)) +
+            " of its pixels have a reading";
     say(line);
     source.close();
     return;
@@ -101,11 +94,11 @@ void look_at_joints(sensors::JointSource& source, const robot::RobotModel& model
   if (result != sensors::Reading::got) {
     fail("joints: opened, and sent nothing within ", kPatience_s, " s ", source.reason());
   }
-  std::string line = "joints: " + source.info().name + ", state of " + fixed_text("%.3f s:", reading.time_s);
+  std::string line = "joints: " + source.info().name + ", state of " + report::fixed(reading.time_s, 3) + " s:";
   std::string beyond;
   for (std::size_t i = 0; i < reading.q.size(); ++i) {
     const robot::Joint& joint = model.joints()[i];
-    line += " " + joint.name + fixed_text(" %.3f", reading.q[i]);
+    line += " " + joint.name + " " + report::fixed(reading.q[i], 3);
     if (!(reading.q[i] >= joint.lower && reading.q[i] <= joint.upper)) {
       beyond += " " + joint.name;
     }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
@@ -21,6 +22,7 @@
 #include "program/run/run_text.hpp"
 #include "program/usage_error.hpp"
 #include "program/warning.hpp"
+#include "report/number_text.hpp"
 
 namespace depthgrid::program {
 namespace {
@@ -49,8 +51,8 @@ struct CloseFile {
 /// A line an answer. What the disk does not take is dropped by the monitor and counted.
 class JsonLines final : public monitor::Output {
  public:
-  JsonLines(const std::filesystem::path& file, const monitor::Names& names)
-      : file_(file.filename() == "-" ? stdout : std::fopen(file.c_str(), "we")), names_(names) {
+  JsonLines(const std::filesystem::path& file, monitor::Names names)
+      : file_(file.filename() == "-" ? stdout : std::fopen(file.c_str(), "we")), names_(std::move(names)) {
     if (file_ == nullptr) {
       fail(file.string(), ": cannot be written");
     }
@@ -106,7 +108,7 @@ class Teller {
     }
   }
 
-  void end() {
+  void end() const {
     if (has_status_) {
       (void)std::fputs("\r\033[K", stderr);
     }
@@ -115,9 +117,9 @@ class Teller {
 
  private:
   static std::string time_text(double seconds) {
-    std::array<char, 32> text{};
-    (void)std::snprintf(text.data(), text.size(), "%8.3f s  ", seconds);
-    return text.data();
+    constexpr std::size_t kWide = 8;
+    const std::string text = report::fixed(seconds, 3);
+    return std::string(kWide - std::min(text.size(), kWide), ' ') + text + " s  ";
   }
   void print(const std::string& line) {
     (void)std::fputs(((has_status_ ? "\r\033[K" : "") + line + "\n").c_str(), stderr);

@@ -1,24 +1,15 @@
 #include "program/run/run_text.hpp"
 
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <optional>
+
+#include "report/number_text.hpp"
 
 namespace depthgrid::program {
 namespace {
 
 using monitor::TimeHistogram;
-
-/// As printf does; NaN as "-".
-std::string fixed(double value, int digits) {
-  if (!std::isfinite(value)) {
-    return "-";
-  }
-  std::array<char, 64> text{};
-  (void)std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
+using report::fixed;
 
 std::string ms(std::optional<double> seconds) { return seconds ? fixed(*seconds * 1e3, *seconds < 0.01 ? 2 : 1) : "-"; }
 
@@ -32,7 +23,7 @@ std::string spread(const TimeHistogram& times) {
 }
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
-  return whole == 0 ? "-" : fixed(100 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
+  return report::percent_of(static_cast<double>(part), static_cast<double>(whole));
 }
 
 std::string counts(const monitor::SourceCounts& source, const char* what) {
