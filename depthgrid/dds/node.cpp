@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -126,6 +127,7 @@ struct Node::State {
           "ros_discovery_info");
   }
 
+  std::mutex one_at_a_time;
   NodeSettings settings;
   Entity domain;
   Entity participant;
@@ -139,6 +141,7 @@ Node::Node(Node&&) noexcept = default;
 Node& Node::operator=(Node&&) noexcept = default;
 
 Publisher Node::publish(const std::string& topic, const messages::MessageType& type, const Qos& qos) {
+  const std::lock_guard guard(state_->one_at_a_time);
   auto made = state_->make_publisher(state_->dds_topic(topic), type, qos);
   state_->info.writers.push_back(guid_of(made->writer));
   state_->tell();
@@ -146,6 +149,7 @@ Publisher Node::publish(const std::string& topic, const messages::MessageType& t
 }
 
 Subscription Node::subscribe(const std::string& topic, const messages::MessageType& type, const Qos& qos) {
+  const std::lock_guard guard(state_->one_at_a_time);
   auto made = std::make_unique<Subscription::State>();
   const std::string name = state_->dds_topic(topic);
   const ddsi_sertype* used = nullptr;

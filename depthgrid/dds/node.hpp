@@ -23,7 +23,7 @@ struct NodeSettings {
 /// - Gives: publishers and subscriptions of topics by their ROS 2 names; other ROS 2 nodes see node, topics, types and
 ///   type hashes.
 /// - Errors: the constructor, publish() and subscribe() throw Error.
-/// - Threads: construction, publish() and subscribe() from one at a time. Cyclone DDS has threads of its own.
+/// - Threads: publish() and subscribe() from any. Cyclone DDS has threads of its own.
 ///
 /// From the first node on Cyclone DDS prints nothing in the whole process; what it says of a failure stands in the
 /// error.

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "depthgrid/core/whole_file.hpp"
 #include "depthgrid/messages/serialization.hpp"
 #include "support/thrown_message.hpp"
 
@@ -47,6 +48,16 @@ TEST(MessageTypes, StatesAreNumberedAsInTheDefinition) {
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
     EXPECT_THAT(text, ::testing::HasSubstr("uint8 " + name + "=" + std::to_string(state) + "\n"));
   }
+}
+
+/// The package that ROS users build says the same.
+TEST(MessageTypes, OursAreThoseOfThePackage) {
+  const std::string folder = std::string(DEPTHGRID_SOURCE) + "/ros2/depthgrid_msgs/msg/";
+  const std::string text(type_of<Distances>().definition);
+  const std::string distances = read_whole_file(folder + "Distances.msg", 10000);
+  EXPECT_EQ(text.substr(0, distances.size()), distances);
+  EXPECT_THAT(text, ::testing::HasSubstr("=\nMSG: depthgrid_msgs/Distance\n" +
+                                         read_whole_file(folder + "Distance.msg", 10000) + "="));
 }
 
 TEST(MessageTypes, AnUnknownOneIsNamed) {
