@@ -10,6 +10,7 @@ import time
 try:
     import rclpy
     from rclpy.qos import QoSDurabilityPolicy, QoSProfile, qos_profile_sensor_data
+    from rclpy.signals import SignalHandlerOptions
     from sensor_msgs.msg import Image, JointState
     from std_msgs.msg import String
 except ImportError as error:
@@ -53,7 +54,7 @@ def main():
     profile.flush()
     os.environ.update(ROS_DOMAIN_ID=str(domain), ROS_AUTOMATIC_DISCOVERY_RANGE="SUBNET",
                       RMW_IMPLEMENTATION="rmw_fastrtps_cpp", FASTDDS_DEFAULT_PROFILES_FILE=profile.name)
-    rclpy.init()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node("someone")
     images, joints, images_back, texts = [], [], [], []
     reliable = QoSProfile(depth=IMAGES + 10)
