@@ -109,10 +109,19 @@ struct UdpEntry {
   int port = 0;
 };
 
+/// The node that cameras, joints and answers of ROS 2 go through.
+struct Ros2Entry {
+  std::string node = "depthgrid";
+  std::string name_space = "/";
+  int domain = 0;               ///< as the ROS_DOMAIN_ID of the other nodes
+  std::string frame = "world";  ///< what the world frame is called there
+};
+
 struct OutputEntry {
   std::optional<UdpEntry> udp{};
   std::filesystem::path jsonl{};  ///< empty: none
   bool terminal = true;
+  bool ros2 = false;  ///< topics of the node
 };
 
 /// - Units: metres, radians, seconds; world frame. Angles of the file are degrees.
@@ -128,6 +137,7 @@ struct Cell {
   std::optional<memory::MemorySettings> memory{};  ///< none: declared that nothing is remembered
   AskEntry ask{};
   AgeEntry ages{};
+  Ros2Entry ros2{};
   OutputEntry outputs{};
   std::vector<ShownValue> shown{};  ///< every value, in the file's order
 };

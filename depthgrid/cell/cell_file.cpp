@@ -17,9 +17,9 @@ namespace {
 constexpr double kLongestAge_s = 3600;
 constexpr double kDegree = std::numbers::pi / 180;
 
-constexpr std::array<std::string_view, 11> kCellKeys{
-    "name",   "cameras", "robot", "space",  "policies", "v_max_m_s", "smallest_obstacle_m",
-    "memory", "ask",     "ages",  "outputs"};
+constexpr std::array<std::string_view, 12> kCellKeys{
+    "name",   "cameras", "robot", "space", "policies", "v_max_m_s", "smallest_obstacle_m",
+    "memory", "ask",     "ages",  "ros2",  "outputs"};
 constexpr std::array<std::string_view, 15> kCameraKeys{
     "name",        "source", "recording",  "recorded_as", "repeat", "serial",  "topic",
     "rate_hz",     "rig",    "intrinsics", "pose",        "sensor", "margins", "smallest_obstacle_m",
@@ -38,7 +38,8 @@ constexpr std::array<std::string_view, 3> kMemoryKeys{"start", "voxel_m", "thinn
 constexpr std::array<std::string_view, 6> kAskKeys{"rate_hz", "rho_m", "resolution_m", "stop_m", "links", "points"};
 constexpr std::array<std::string_view, 3> kPointKeys{"name", "at_m", "radius_m"};
 constexpr std::array<std::string_view, 2> kAgeKeys{"image_s", "joints_s"};
-constexpr std::array<std::string_view, 3> kOutputKeys{"udp", "jsonl", "terminal"};
+constexpr std::array<std::string_view, 4> kOutputKeys{"udp", "jsonl", "terminal", "ros2"};
+constexpr std::array<std::string_view, 4> kRos2Keys{"node", "namespace", "domain", "frame"};
 constexpr std::array<std::string_view, 2> kUdpKeys{"host", "port"};
 
 constexpr std::array<std::string_view, 6> kSources{"recording", "simulated", "realsense", "freenect", "openni", "ros2"};
@@ -347,7 +348,20 @@ OutputEntry outputs_of(const Section& section, const std::filesystem::path& fold
     outputs.jsonl = folder / section.text("jsonl", "a file, or - for standard output");
   }
   outputs.terminal = section.yes("terminal", true);
+  outputs.ros2 = section.yes("ros2", false);
   return outputs;
+}
+
+Ros2Entry ros2_of(const Section& section) {
+  constexpr int kLastDomain = 232;
+  Ros2Entry ros2;
+  ros2.node = section.text("node", "a name of letters, digits and _", ros2.node);
+  ros2.name_space = section.text("namespace", "/ or like /cell/left", ros2.name_space);
+  if (section.has("domain")) {
+    ros2.domain = section.whole("domain", 0, kLastDomain, "", "the ROS_DOMAIN_ID of the other nodes");
+  }
+  ros2.frame = section.text("frame", "what the world frame is called", ros2.frame);
+  return ros2;
 }
 
 void refuse_equal_names(const Cell& cell) {
@@ -391,6 +405,7 @@ Cell parse_cell(std::string_view text, const std::filesystem::path& file) {
   const Section ages = section.map_or_empty("ages", kAgeKeys);
   cell.ages.image_s = ages.number("image_s", {0, kLongestAge_s, true}, "s", "", cell.ages.image_s);
   cell.ages.joints_s = ages.number("joints_s", {0, kLongestAge_s, true}, "s", "", cell.ages.joints_s);
+  cell.ros2 = ros2_of(section.map_or_empty("ros2", kRos2Keys));
   cell.outputs = outputs_of(section.map_or_empty("outputs", kOutputKeys), folder);
   return cell;
 }

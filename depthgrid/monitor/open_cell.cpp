@@ -4,10 +4,14 @@
 #include <string>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/whole_file.hpp"
+#include "depthgrid/monitor/ros2_output.hpp"
 #include "depthgrid/network/datagram_writer.hpp"
 #include "depthgrid/network/udp_sender.hpp"
 #include "depthgrid/sensors/recorded_camera.hpp"
 #include "depthgrid/sensors/recorded_joints.hpp"
+#include "depthgrid/sensors/ros2_camera.hpp"
+#include "depthgrid/sensors/ros2_joints.hpp"
 #include "depthgrid/sensors/simulated_camera.hpp"
 #include "depthgrid/sensors/simulated_joints.hpp"
 
@@ -34,7 +38,8 @@ std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
 
 std::unique_ptr<sensors::JointSource> joints_of(const cell::Cell& cell, const cell::CellSetup& setup,
                                                 const std::shared_ptr<const sensors::SimulatedCell>& simulated,
-                                                const std::shared_ptr<const sensors::Playback>& playback) {
+                                                const std::shared_ptr<const sensors::Playback>& playback,
+                                                const std::shared_ptr<dds::Node>& ros2) {
   const cell::JointsEntry& joints = cell.robot->joints;
   std::vector<std::string> names;
   for (const robot::Joint& joint : setup.robot->model.joints()) {
@@ -48,15 +53,35 @@ std::unique_ptr<sensors::JointSource> joints_of(const cell::Cell& cell, const ce
         fail(cell.robot->place, ": joints: a recording of joints is played beside a camera's, and no camera has one");
       }
       return std::make_unique<sensors::RecordedJoints>(joints.file, names, playback);
+    case SourceKind::ros2:
+      return std::make_unique<sensors::Ros2Joints>(ros2, joints.topic, names);
     default:
       fail(cell.robot->place, ": joints: source: ", to_string(joints.source),
-           " is not part of this build: recording, simulated");
+           " is not part of this build: recording, simulated, ros2");
   }
 }
 
 }  // namespace
 
-Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup) {
+std::shared_ptr<dds::Node> ros2_node(const cell::Cell& cell) {
+  const bool has_camera = std::any_of(cell.cameras.begin(), cell.cameras.end(),
+                                      [](const auto& camera) { return camera.source == SourceKind::ros2; });
+  const bool has_joints = cell.robot && cell.robot->joints.source == SourceKind::ros2;
+  if (!has_camera && !has_joints && !cell.outputs.ros2) {
+    return nullptr;
+  }
+  try {
+    dds::NodeSettings settings;
+    settings.name = cell.ros2.node;
+    settings.name_space = cell.ros2.name_space;
+    settings.domain = cell.ros2.domain;
+    return std::make_shared<dds::Node>(settings);
+  } catch (const Error& error) {
+    fail(cell.file.string(), ": ros2: ", error.what());
+  }
+}
+
+Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const std::shared_ptr<dds::Node>& ros2) {
   const auto playback = playback_of(cell);
   const bool simulated_joints = cell.robot && cell.robot->joints.source == SourceKind::simulated;
   const bool is_simulated =
@@ -77,12 +102,16 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup) {
         sources.cameras.push_back(
             std::make_unique<sensors::RecordedCamera>(camera.recording, camera.recorded_as, playback));
         break;
+      case SourceKind::ros2:
+        sources.cameras.push_back(std::make_unique<sensors::Ros2Camera>(ros2, camera.device));
+        break;
       default:
-        fail(camera.place, ": source: ", to_string(camera.source), " is not part of this build: recording, simulated");
+        fail(camera.place, ": source: ", to_string(camera.source),
+             " is not part of this build: recording, simulated, ros2");
     }
   }
   if (cell.robot) {
-    sources.joints = joints_of(cell, setup, simulated, playback);
+    sources.joints = joints_of(cell, setup, simulated, playback, ros2);
   }
   return sources;
 }
@@ -143,6 +172,16 @@ class UdpOutput final : public Output {
 };
 
 }  // namespace
+
+std::unique_ptr<Output> ros2_output(const cell::Cell& cell, const cell::CellSetup& setup, const Names& names,
+                                    std::shared_ptr<dds::Node> ros2) {
+  constexpr std::uint64_t kLargestUrdf = std::uint64_t{16} << 20U;
+  Ros2OutputSettings settings{.names = names, .rig = setup.rig, .frame = cell.ros2.frame, .robot_description = {}};
+  if (cell.robot && !cell.robot->is_built_in) {
+    settings.robot_description = read_whole_file(cell.robot->urdf, kLargestUrdf);
+  }
+  return ros2_output(std::move(ros2), settings);
+}
 
 std::unique_ptr<Output> udp_output(const cell::UdpEntry& to) { return std::make_unique<UdpOutput>(to); }
 

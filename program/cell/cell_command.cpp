@@ -118,7 +118,7 @@ void check(const std::string& file) {
   for (const std::string& line : cell::implausible(cell, setup)) {
     say("implausible: " + line);
   }
-  monitor::Sources sources = monitor::make_sources(cell, setup);
+  monitor::Sources sources = monitor::make_sources(cell, setup, monitor::ros2_node(cell));
   std::vector<std::string> failures;
   const auto attempt = [&](const auto& look) {
     try {

@@ -145,11 +145,16 @@ void run_cell(const RunOptions& options) {
   for (const std::string& line : cell::implausible(cell, setup)) {
     warn(line);
   }
-  monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup));
+  const auto ros2 = monitor::ros2_node(cell);
+  monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup, ros2));
   std::vector<std::string> outputs;
   if (cell.outputs.udp) {
     monitor.add(monitor::udp_output(*cell.outputs.udp));
     outputs.push_back("udp " + cell.outputs.udp->host + " port " + std::to_string(cell.outputs.udp->port));
+  }
+  if (cell.outputs.ros2) {
+    monitor.add(monitor::ros2_output(cell, setup, monitor.names(), ros2));
+    outputs.push_back("ROS 2 node " + cell.ros2.node + ", domain " + std::to_string(cell.ros2.domain));
   }
   if (!cell.outputs.jsonl.empty()) {
     monitor.add(std::make_unique<JsonLines>(cell.outputs.jsonl, monitor.names()));

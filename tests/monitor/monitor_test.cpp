@@ -272,7 +272,7 @@ TEST(Monitor, WhatDoesNotFitTogetherIsRefused) {
   const cell::CellSetup setup = cell::setup(cell);
   const auto refused = [&](auto&& change) {
     MonitorSettings settings = monitor_settings(cell);
-    Sources sources = make_sources(cell, setup);
+    Sources sources = make_sources(cell, setup, nullptr);
     change(settings, sources);
     try {
       const Monitor monitor(setup, settings, std::move(sources));

@@ -1,0 +1,32 @@
+#include "depthgrid/sensors/ros2_clock.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "depthgrid/sensors/clock.hpp"
+
+namespace depthgrid::sensors {
+namespace {
+
+/// Seconds by which the system's clock is ahead.
+double system_ahead_s() noexcept {
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(since_1970).count() - clock_now_s();
+}
+
+}  // namespace
+
+double clock_time_s(const messages::Time& stamp) noexcept { return messages::seconds(stamp) - system_ahead_s(); }
+
+messages::Time stamp_of(double time_s) noexcept {
+  constexpr double kLast_s = 2147483647;
+  const double since_1970_s = time_s + system_ahead_s();
+  if (!(since_1970_s >= 0 && since_1970_s < kLast_s)) {
+    return {};
+  }
+  const double whole_s = std::floor(since_1970_s);
+  return {.sec = static_cast<std::int32_t>(whole_s),
+          .nanosec = static_cast<std::uint32_t>((since_1970_s - whole_s) * 1e9)};
+}
+
+}  // namespace depthgrid::sensors

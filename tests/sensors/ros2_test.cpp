@@ -1,0 +1,189 @@
+// Cameras and joints that are topics of ROS 2.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "dds/loopback.hpp"
+#include "depthgrid/sensors/clock.hpp"
+#include "depthgrid/sensors/ros2_camera.hpp"
+#include "depthgrid/sensors/ros2_clock.hpp"
+#include "depthgrid/sensors/ros2_joints.hpp"
+
+namespace depthgrid::sensors {
+namespace {
+
+using messages::type_of;
+
+/// A driver's node and ours.
+class Ros2Source : public testing::Test {
+ protected:
+  static int domain() { return 50 + static_cast<int>(getpid() % 150); }
+  static bool becomes(const std::function<bool()>& holds) {
+    const double end_s = clock_now_s() + 20;
+    while (!holds()) {
+      if (clock_now_s() > end_s) {
+        return false;
+      }
+    }
+    return true;
+  }
+  template <class Message>
+  static void send(dds::Publisher& publisher, const Message& message) {
+    EXPECT_TRUE(becomes([&] { return publisher.subscribers() > 0; })) << "nobody listens";
+    EXPECT_TRUE(publisher.write(messages::to_bytes(message)));
+  }
+
+  dds::Node driver_{dds::loopback("driver", domain())};
+  std::shared_ptr<dds::Node> node_ = std::make_shared<dds::Node>(dds::loopback("depthgrid", domain()));
+};
+
+messages::Image image_of(const std::vector<std::uint16_t>& pixels, int width_px, double time_s) {
+  messages::Image image;
+  image.header.stamp = stamp_of(time_s);
+  image.width = static_cast<std::uint32_t>(width_px);
+  image.height = static_cast<std::uint32_t>(pixels.size()) / image.width;
+  image.step = 2 * image.width;
+  image.encoding = "16UC1";
+  image.data = std::as_bytes(std::span(pixels));
+  return image;
+}
+
+TEST(Ros2Clock, StampsComeBack) {
+  const double now_s = clock_now_s();
+  EXPECT_NEAR(clock_time_s(stamp_of(now_s)), now_s, 1e-5);
+  EXPECT_NEAR(clock_time_s(stamp_of(now_s - 0.25)), now_s - 0.25, 1e-5);
+  EXPECT_EQ(stamp_of(std::numeric_limits<double>::quiet_NaN()).sec, 0);
+  EXPECT_EQ(stamp_of(-1e18).sec, 0);
+  EXPECT_EQ(stamp_of(1e18).nanosec, 0U);
+}
+
+TEST_F(Ros2Source, CameraGivesTheNewestImageAndSaysWhatItPassedOver) {
+  dds::Publisher images = driver_.publish("/camera/depth/image_raw", type_of<messages::Image>(), dds::kReliable);
+  dds::Publisher infos = driver_.publish("/camera/depth/camera_info", type_of<messages::CameraInfo>(), dds::kLatched);
+  messages::CameraModel model;
+  model.intrinsics = {4, 3, 5, 5, 2, 1.5};
+  ASSERT_TRUE(infos.write(messages::to_bytes(messages::camera_info(model, {}))));
+  Ros2Camera camera(node_, "/camera/depth/image_raw");
+  DepthReading reading;
+  EXPECT_EQ(camera.next(reading, 0.01), Reading::failed) << "not open";
+  camera.open();
+  EXPECT_EQ(camera.info().serial, "/camera/depth/image_raw");
+  EXPECT_EQ(camera.next(reading, 0.01), Reading::nothing);
+  std::vector<std::uint16_t> pixels(12, 1500);
+  const double time_s = clock_now_s() - 0.02;
+  for (int n = 0; n < 3; ++n) {
+    pixels[5] = static_cast<std::uint16_t>(1000 + n);
+    send(images, image_of(pixels, 4, time_s + 1e-3 * n));
+  }
+  std::int64_t skipped = 0;
+  ASSERT_TRUE(becomes([&] {
+    const Reading found = camera.next(reading, 0.1);
+    EXPECT_NE(found, Reading::failed) << camera.reason();
+    skipped += found == Reading::got ? reading.skipped : 0;
+    return found == Reading::got && std::abs(reading.time_s - time_s - 2e-3) < 1e-4;
+  }));
+  EXPECT_LE(skipped, 2);
+  ASSERT_EQ(reading.depth.width_px, 4);
+  ASSERT_EQ(reading.depth.height_px, 3);
+  DepthImage depth(4, 3);
+  normalise(reading.depth, MeasurementRule{}, depth);
+  EXPECT_FLOAT_EQ(depth.at(1, 1), 1.002F);
+  EXPECT_FLOAT_EQ(depth.at(3, 2), 1.5F);
+  camera.close();
+  EXPECT_EQ(camera.next(reading, 0.01), Reading::failed);
+}
+
+TEST_F(Ros2Source, CameraTakesItsIntrinsicsFromTheTopicBesideIt) {
+  dds::Publisher infos = driver_.publish("/left/camera_info", type_of<messages::CameraInfo>(), dds::kReliable);
+  messages::CameraModel model;
+  model.intrinsics = {64, 48, 60, 61, 32, 24};
+  const std::vector<std::byte> message = messages::to_bytes(messages::camera_info(model, {}));
+  std::jthread teller([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      (void)infos.write(message);
+      usleep(20'000);
+    }
+  });
+  Ros2Camera camera(node_, "/left/image");
+  camera.open();
+  ASSERT_TRUE(camera.info().intrinsics.has_value());
+  EXPECT_EQ(camera.info().intrinsics->width_px, 64);
+  EXPECT_NEAR(camera.info().intrinsics->fy_px, 61, 1e-12);
+  EXPECT_NEAR(camera.info().intrinsics->cx_px, 32, 1e-12);
+}
+
+TEST_F(Ros2Source, CameraThatSendsColoursHasFailedAndSaysSo) {
+  dds::Publisher images = driver_.publish("/camera/image", type_of<messages::Image>(), dds::kReliable);
+  Ros2Camera camera(node_, "/camera/image");
+  camera.open();
+  const std::vector<std::uint16_t> pixels(12, 1500);
+  messages::Image image = image_of(pixels, 4, clock_now_s());
+  image.encoding = "rgb8";
+  send(images, image);
+  DepthReading reading;
+  Reading found = Reading::nothing;
+  ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.1)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::failed);
+  EXPECT_NE(camera.reason().find("/camera/image: "), std::string_view::npos) << camera.reason();
+  EXPECT_NE(camera.reason().find("rgb8"), std::string_view::npos) << camera.reason();
+}
+
+TEST_F(Ros2Source, JointsAreFoundByTheirNames) {
+  dds::Publisher states = driver_.publish("/joint_states", type_of<messages::JointState>(), dds::kReliable);
+  Ros2Joints joints(node_, "/joint_states", {"shoulder", "elbow"});
+  joints.open();
+  messages::JointState gripper;
+  gripper.name = {"finger"};
+  gripper.position = {0.02};
+  messages::JointState arm;
+  arm.name = {"finger", "elbow", "shoulder"};
+  arm.position = {0.01, -2, 1};
+  const double time_s = clock_now_s() - 0.01;
+  arm.header.stamp = stamp_of(time_s);
+  send(states, gripper);
+  send(states, arm);
+  JointReading reading;
+  ASSERT_TRUE(becomes([&] {
+    const Reading found = joints.next(reading, 0.1);
+    EXPECT_NE(found, Reading::failed) << joints.reason();
+    return found == Reading::got;
+  }));
+  ASSERT_EQ(reading.q.size(), 2U);
+  EXPECT_EQ(reading.q[0], 1);
+  EXPECT_EQ(reading.q[1], -2);
+  EXPECT_NEAR(reading.time_s, time_s, 1e-4);
+}
+
+TEST_F(Ros2Source, JointsOfAnotherRobotHaveFailedAndSaySo) {
+  dds::Publisher states = driver_.publish("/joint_states", type_of<messages::JointState>(), dds::kReliable);
+  Ros2Joints joints(node_, "/joint_states", {"shoulder", "elbow"});
+  joints.open();
+  messages::JointState other;
+  other.name = {"shoulder"};
+  other.position = {0.5};
+  JointReading reading;
+  Reading found = Reading::nothing;
+  ASSERT_TRUE(becomes([&] {
+    send(states, other);
+    return (found = joints.next(reading, 0.1)) != Reading::nothing;
+  }));
+  EXPECT_EQ(found, Reading::failed);
+  EXPECT_NE(joints.reason().find("no joint 'elbow'"), std::string_view::npos) << joints.reason();
+  joints.close();
+  joints.open();
+  other.position.clear();
+  send(states, other);
+  ASSERT_TRUE(becomes([&] { return (found = joints.next(reading, 0.1)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::failed);
+  EXPECT_NE(joints.reason().find("1 names and 0 positions"), std::string_view::npos) << joints.reason();
+}
+
+}  // namespace
+}  // namespace depthgrid::sensors
