@@ -68,6 +68,8 @@ function(depthgrid_add_library name)
   add_library(depthgrid_${name} ${ARG_SOURCES})
   add_library(depthgrid::${name} ALIAS depthgrid_${name})
   set_target_properties(depthgrid_${name} PROPERTIES
+    # Shared ones find each other wherever they are installed; a program's own path is not theirs.
+    INSTALL_RPATH "$ORIGIN"
     EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "")
   target_compile_features(depthgrid_${name} PUBLIC cxx_std_20)

@@ -12,8 +12,8 @@ string(RANDOM LENGTH 3 ALPHABET 0123456789 digits)
 file(READ "${SOURCE}/examples/simulated_cell.yaml" cell)
 string(REPLACE "port: 47000" "port: 48${digits}" cell "${cell}")
 file(WRITE "${WORK}/cell.yaml" "${cell}")
-# Two commands at once, as in a pipe; the reader does not read what the other prints.
-execute_process(COMMAND "${COMMAND}" run "${WORK}/cell.yaml" --seconds 8 COMMAND "${WORK}/reader" 48${digits} 7
+# Two commands at once, as in a pipe; the reader does not read what the other prints, and stays until it has.
+execute_process(COMMAND "${COMMAND}" run "${WORK}/cell.yaml" --seconds 5 COMMAND "${WORK}/reader" 48${digits} 9
   RESULTS_VARIABLE results OUTPUT_VARIABLE output ERROR_VARIABLE log)
 if(NOT results STREQUAL "0;0")
   message(FATAL_ERROR "the command and the reader end with ${results}:\n${output}\n${log}")
