@@ -16,15 +16,15 @@ smallest_obstacle_m: 0.02
 
 cameras:
   - name: left
-    source: realsense            # or recording, simulated, freenect, openni, ros2
-    serial: "000000000001"       # on the camera's underside
+    source: ros2                 # or recording, simulated
+    topic: /left/depth/image_rect_raw   # of the camera's ROS 2 node, realsense2_camera for instance
     intrinsics: {width_px: 640, height_px: 480, fx_px: 385.0, fy_px: 385.0, cx_px: 319.5, cy_px: 239.5}
     pose: {position_m: [1.8, 1.2, 1.4], look_at_m: [0, 0, 0.5]}   # of the depth imager, in the world
     sensor: realsense_d435       # its noise, range and exposure
     margins: {translation_m: 0.005, rotation_deg: 0.15}           # how well the pose is known
   - name: right
-    source: realsense
-    serial: "000000000002"
+    source: ros2
+    topic: /right/depth/image_rect_raw
     intrinsics: {width_px: 640, height_px: 480, fx_px: 385.0, fy_px: 385.0, cx_px: 319.5, cy_px: 239.5}
     pose: {position_m: [1.8, -1.2, 1.4], look_at_m: [0, 0, 0.5]}
     sensor: realsense_d435
@@ -58,6 +58,7 @@ ages: {image_s: 0.2, joints_s: 0.05}   # older images free nothing; older joints
 
 outputs:
   udp: {host: 127.0.0.1, port: 47000}  # a datagram an answer: depthgrid/network/datagram.h
+  ros2: true                           # distances, markers for rviz2, diagnostics: docs/ros2.md
   terminal: true
 )";
 }
