@@ -46,7 +46,11 @@ extern "C" void end_on_signal(int signal) {
 
 }  // namespace
 
-void ask_before_the_end() { signals_left.store(2); }
+void ask_before_the_end() {
+  signals_left.store(2);
+  // Somebody who stops reading what is printed does not end the rest.
+  (void)::signal(SIGPIPE, SIG_IGN);
+}
 
 bool stop_is_asked() noexcept { return signals_left.load() == 1; }
 

@@ -93,7 +93,7 @@ struct AskEntry {
   double rate_hz = 500;
   double rho_m = kDefaultRho;
   double resolution_m = 0.005;
-  double stop_m = 0;                 ///< a part whose bound is not above this says stop
+  double stop_m = 0;                 ///< a part that is not farther than this, beyond its blind layer, says stop
   bool moving_links = false;         ///< every link that at least two joints move
   std::vector<std::string> links{};  ///< or these
   std::vector<PointEntry> points{};

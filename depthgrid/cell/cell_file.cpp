@@ -313,8 +313,8 @@ AskEntry ask_of(const Section& section, bool has_robot) {
   ask.rate_hz = section.number("rate_hz", {0, 10000, true}, "Hz", "answers a second", ask.rate_hz);
   ask.rho_m = section.number("rho_m", {0, 100, true}, "m", "how far around a part obstacles matter", ask.rho_m);
   ask.resolution_m = section.number("resolution_m", {0.0005, 1}, "m", "tightness", ask.resolution_m);
-  ask.stop_m =
-      section.number("stop_m", {0, ask.rho_m}, "m", "a part whose distance is not above this says stop", ask.stop_m);
+  ask.stop_m = section.number("stop_m", {0, ask.rho_m}, "m",
+                              "a part that is not farther than this beyond its blind layer says stop", ask.stop_m);
   if (section.is_list("links")) {
     ask.links = section.texts("links", "names of links");
   } else if (section.has("links")) {

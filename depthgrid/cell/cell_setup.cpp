@@ -125,6 +125,18 @@ void add_link(const robot::RobotModel& model, const robot::LinkCapsule& part, st
   parts.push_back({model.links()[part.link].name, part, {}});
 }
 
+/// A link that is asked for and has no shape would be answered for by nobody.
+void refuse_without_shape(const Cell& cell, const robot::RobotModel& model,
+                          const std::vector<robot::LinkCapsule>& capsules) {
+  for (const std::string& name : cell.ask.links) {
+    const std::size_t link = model.link_index(name);
+    if (std::none_of(capsules.begin(), capsules.end(), [&](const auto& part) { return part.link == link; })) {
+      fail(cell.file.string(), ": ask: links: ", name, " has no shape in the robot's file, so no distance can be said ",
+           "of it: leave it out, or add a <collision> to the file");
+    }
+  }
+}
+
 std::vector<AskedPart> parts_of(const Cell& cell, const std::optional<robot::PlacedRobot>& robot) {
   std::vector<AskedPart> parts;
   if (robot && (cell.ask.moving_links || !cell.ask.links.empty())) {
@@ -136,6 +148,7 @@ std::vector<AskedPart> parts_of(const Cell& cell, const std::optional<robot::Pla
       for (const std::string& name : cell.ask.links) {
         links.push_back(model.link_index(name));
       }
+      refuse_without_shape(cell, model, asked);
       std::erase_if(asked, [&](const robot::LinkCapsule& part) {
         return std::find(links.begin(), links.end(), part.link) == links.end();
       });

@@ -52,7 +52,7 @@ ask:
   rate_hz: 500
   links: moving                  # every link that at least two joints move; or a list of names
   rho_m: 0.6                     # how far around them obstacles matter
-  stop_m: 0.10                   # a link whose distance is not above this says stop
+  stop_m: 0.10                   # a link that is not farther than this beyond its blind layer says stop
 
 ages: {image_s: 0.2, joints_s: 0.05}   # older images free nothing; older joints: no answer
 

@@ -59,6 +59,25 @@ Guid guid_of(const Entity& entity) {
   return result;
 }
 
+/// A publisher's or a subscription's.
+struct End {
+  std::int32_t handle = 0;
+  Guid guid{};
+};
+
+std::vector<Guid> guids_of_those_there(std::vector<End>& ends) {
+  std::erase_if(ends, [](const End& end) {
+    dds_guid_t guid{};
+    return dds_get_guid(end.handle, &guid) != DDS_RETCODE_OK ||
+           std::memcmp(guid.v, end.guid.data(), end.guid.size()) != 0;
+  });
+  std::vector<Guid> guids;
+  for (const End& end : ends) {
+    guids.push_back(end.guid);
+  }
+  return guids;
+}
+
 Entity make_participant(const NodeSettings& settings) {
   const QosPolicies policies(dds_create_qos(), [](dds_qos* p) { dds_delete_qos(p); });
   constexpr std::string_view kData = "enclave=/;";  // where other nodes look for it
@@ -119,7 +138,10 @@ struct Node::State {
     return "rt" + full;
   }
 
-  void tell() const {
+  /// An end that has gone is told of no more.
+  void tell() {
+    info.readers = guids_of_those_there(readers);
+    info.writers = guids_of_those_there(writers);
     std::vector<std::byte> bytes;
     to_bytes(info, bytes);
     ddsi_serdata* data = make_byte_message(discovery->type, bytes);
@@ -133,6 +155,7 @@ struct Node::State {
   Entity participant;
   std::unique_ptr<Publisher::State> discovery;
   DiscoveryInfo info;
+  std::vector<End> readers, writers;
 };
 
 Node::Node(const NodeSettings& settings) : state_(std::make_unique<State>(settings)) {}
@@ -143,7 +166,7 @@ Node& Node::operator=(Node&&) noexcept = default;
 Publisher Node::publish(const std::string& topic, const messages::MessageType& type, const Qos& qos) {
   const std::lock_guard guard(state_->one_at_a_time);
   auto made = state_->make_publisher(state_->dds_topic(topic), type, qos);
-  state_->info.writers.push_back(guid_of(made->writer));
+  state_->writers.push_back({made->writer.handle(), guid_of(made->writer)});
   state_->tell();
   return Publisher(std::move(made));
 }
@@ -161,7 +184,7 @@ Subscription Node::subscribe(const std::string& topic, const messages::MessageTy
   made->condition = Entity(dds_create_readcondition(made->reader.handle(), DDS_ANY_STATE), "a condition");
   made->waiting = Entity(dds_create_waitset(participant), "a waitset");
   check(dds_waitset_attach(made->waiting.handle(), made->condition.handle(), 0), "a waitset");
-  state_->info.readers.push_back(guid_of(made->reader));
+  state_->readers.push_back({made->reader.handle(), guid_of(made->reader)});
   state_->tell();
   return Subscription(std::move(made));
 }

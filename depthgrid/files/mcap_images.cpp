@@ -56,7 +56,8 @@ std::string id_and_topic(const std::string& given, std::string& topic) {
 
 bool same_calibration(const messages::CameraInfo& a, const messages::CameraInfo& b) {
   return a.width == b.width && a.height == b.height && a.distortion_model == b.distortion_model && a.d == b.d &&
-         a.k == b.k && a.p == b.p;
+         a.k == b.k && a.p == b.p && a.r == b.r && a.binning_x == b.binning_x && a.binning_y == b.binning_y &&
+         a.roi.x_offset == b.roi.x_offset && a.roi.y_offset == b.roi.y_offset;
 }
 
 /// The view's pixels in memory that the next message leaves alone.

@@ -66,18 +66,22 @@ void TransformTree::add_moving(const messages::Transforms& message) {
 
 std::string TransformTree::root_of(const std::string& frame) const {
   std::string at = frame_name(frame);
+  const auto refuse_moving = [&] {
+    if (const auto moves = moving_.find(at); moves != moving_.end()) {
+      fail("frame ", frame_in_quotes(frame), " moves: ", frame_in_quotes(at), " stands in ",
+           frame_in_quotes(moves->second), " by /tf, which changes; give a rig file with a trajectory");
+    }
+  };
   std::set<std::string> passed{at};
   for (auto place = static_.find(at); place != static_.end(); place = static_.find(at)) {
+    refuse_moving();  // even where an old entry says that it stands
     at = place->second.parent;
     if (!passed.insert(at).second) {
       fail("the frames above ", frame_in_quotes(frame), " go around in a ring: ", frame_in_quotes(at),
            " is above itself");
     }
   }
-  if (const auto moves = moving_.find(at); moves != moving_.end()) {
-    fail("frame ", frame_in_quotes(frame), " moves: ", frame_in_quotes(at), " stands in ",
-         frame_in_quotes(moves->second), " by /tf, which changes; give a rig file with a trajectory");
-  }
+  refuse_moving();
   return at;
 }
 

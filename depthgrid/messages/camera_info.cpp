@@ -1,6 +1,7 @@
 #include "depthgrid/messages/camera_info.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <span>
 
@@ -47,6 +48,22 @@ PinholeCamera intrinsics(const CameraInfo& info, double fx, double fy, double cx
 
 }  // namespace
 
+/// Rectified images of a stereo pair lie in a frame that is turned by R and shifted by P's last column from the one
+/// that the header names, and poses are of that one.
+void refuse_another_frame(const CameraInfo& info) {
+  const bool is_unset = std::all_of(info.r.begin(), info.r.end(), [](double value) { return value == 0; });
+  for (std::size_t n = 0; n < info.r.size(); ++n) {
+    constexpr double kTurn = 1e-9;
+    if (!is_unset && !(std::abs(info.r[n] - (n % 4 == 0 ? 1 : 0)) <= kTurn)) {
+      fail("camera_info: R turns the rectified image out of its frame, must be the identity; give a rig file");
+    }
+  }
+  if (info.p[3] != 0 || info.p[7] != 0) {
+    fail("camera_info: P shifts the rectified image out of its frame (Tx ", info.p[3], ", Ty ", info.p[7],
+         "), must be 0; give a rig file");
+  }
+}
+
 CameraModel camera_model(const CameraInfo& info, bool rectified) {
   refuse_part_of_the_sensor(info);
   const auto is_zero = [](double value) { return value == 0; };
@@ -54,6 +71,7 @@ CameraModel camera_model(const CameraInfo& info, bool rectified) {
     fail("camera_info: K is all 0: the camera is not calibrated; give a rig file");
   }
   if (rectified) {
+    refuse_another_frame(info);
     require_form(info.p, "P", {1, 4, 8, 9}, 10, "fx 0 cx Tx, 0 fy cy Ty, 0 0 1 0");
     return {.intrinsics = intrinsics(info, info.p[0], info.p[5], info.p[2], info.p[6]), .distortion = {}};
   }

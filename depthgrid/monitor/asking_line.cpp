@@ -42,7 +42,8 @@ AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::Sear
       evaluator_(evaluator),
       history_(history),
       joints_(joints),
-      cameras_(cameras) {
+      cameras_(cameras),
+      time_error_s_(setup.exposure.time_error_s) {
   for (const cell::AskedPart& part : asked_) {
     if (part.on_robot) {
       links_.push_back(*part.on_robot);
@@ -52,7 +53,11 @@ AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::Sear
     for (const robot::Joint& joint : robot_->model.joints()) {
       speeds_.push_back(joint.max_speed);
     }
-    q_.resize(robot_->model.joints().size());
+    q_.resize(speeds_.size());
+    window_.resize(speeds_.size());
+    moved_.resize(speeds_.size());
+    accelerations_ = setup.exposure.joint_accelerations;
+    accelerations_.resize(speeds_.size(), std::numeric_limits<double>::infinity());
     T_world_link_.assign(robot_->model.links().size(), Pose::Identity());
   }
   links_world_.resize(links_.size());
@@ -73,8 +78,8 @@ bool AskingLine::place_parts(double now_s) noexcept {
     placed = joints.known() && robot_->link_poses(q_, T_world_link_);
     if (placed) {
       robot::place(links_, T_world_link_, links_world_);
-      // Where the joints may have gone since their newest state.
-      robot::motion_padding(robot_->model, links_, T_world_link_, speeds_, joints.time_error_s, motion_m_);
+      bound_motion(now_s, joints.time_error_s);
+      robot::motion_padding(robot_->model, links_, T_world_link_, moved_, 1.0, motion_m_);
     }
   }
   std::size_t link = 0;
@@ -89,6 +94,17 @@ bool AskingLine::place_parts(double now_s) noexcept {
     ++link;
   }
   return placed;
+}
+
+// Since their newest state the joints may have gone anywhere at their greatest speeds, and that state's own time may be
+// off by what the cell declares; as RobotAtExposure has it for images.
+void AskingLine::bound_motion(double now_s, double hold_s) noexcept {
+  const bool measured = history_->greatest_motion(now_s, time_error_s_, q_, speeds_, accelerations_, window_);
+  for (std::size_t j = 0; j < moved_.size(); ++j) {
+    const double at_most = speeds_[j] * (time_error_s_ + hold_s);
+    const double by_samples = std::isfinite(accelerations_[j]) ? window_[j] : std::min(at_most, window_[j]);
+    moved_[j] = measured ? by_samples : at_most;
+  }
 }
 
 void AskingLine::look_at_cameras() noexcept {

@@ -56,6 +56,8 @@ class AskingLine {
  private:
   /// False: nobody knows where the robot is.
   [[nodiscard]] bool place_parts(double now_s) noexcept;
+  /// How far each joint may be from q_ at now_s, into moved_.
+  void bound_motion(double now_s, double hold_s) noexcept;
   void look_at_cameras() noexcept;
   void find_reason(bool placed) noexcept;
   void note(bool was_stopped) noexcept;
@@ -69,7 +71,11 @@ class AskingLine {
   const JointLine* joints_;
   const std::vector<std::unique_ptr<CameraLine>>& cameras_;
   std::vector<double> q_;
+  double time_error_s_;  ///< between the joints' clock and ours
   std::vector<double> speeds_;
+  std::vector<double> accelerations_;  ///< infinite where not declared
+  std::vector<double> window_;         ///< how far each joint may be, by the samples
+  std::vector<double> moved_;          ///< and by all that is known
   std::vector<Pose> T_world_link_;
   std::vector<Capsule> links_world_;
   std::vector<double> motion_m_;

@@ -25,13 +25,27 @@ std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
   double first_s = std::numeric_limits<double>::infinity();
   double last_s = -std::numeric_limits<double>::infinity();
   bool repeats = false;
+  bool is_first = true;
+  const auto repeat_all = [&](bool repeat, const std::string& place) {
+    if (!is_first && repeat != repeats) {
+      fail(place, ": repeat: all recordings of a cell begin anew together, or none of them");
+    }
+    repeats = repeat;
+    is_first = false;
+    if (repeats && cell.memory) {
+      fail(place, ": repeat: what was seen free at the end would be remembered at the beginning; memory: none");
+    }
+  };
   for (const cell::CameraEntry& camera : cell.cameras) {
     if (camera.source == SourceKind::recording) {
       const sensors::RecordedSpan span = sensors::recorded_span(camera.recording, camera.recorded_as);
       first_s = std::min(first_s, span.first_s);
       last_s = std::max(last_s, span.last_s);
-      repeats = repeats || camera.repeat;
+      repeat_all(camera.repeat, camera.place);
     }
+  }
+  if (cell.robot && cell.robot->joints.source == SourceKind::recording) {
+    repeat_all(cell.robot->joints.repeat, cell.robot->place + ": joints");
   }
   return first_s <= last_s ? std::make_shared<const sensors::Playback>(first_s, last_s, repeats) : nullptr;
 }
@@ -165,7 +179,11 @@ namespace {
 class UdpOutput final : public Output {
  public:
   explicit UdpOutput(const cell::UdpEntry& to) : sender_(to.host, to.port) {}
-  void take(const CellAnswer& answer) override { (void)sender_.send(network::write_datagram(datagram_answer(answer))); }
+  void take(const CellAnswer& answer) override {
+    if (!sender_.send(network::write_datagram(datagram_answer(answer)))) {
+      fail("a datagram was not sent");
+    }
+  }
 
  private:
   network::UdpSender sender_;

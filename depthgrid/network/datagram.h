@@ -18,7 +18,7 @@
  *       16      8  double: the time that the answer is for, on the sender's clock (CLOCK_MONOTONIC)
  *       24      8  double: the newest exposure behind it
  *       32      1  state, enum depthgrid_state
- *       33      1  stop: 1, unless every part has a distance above the cell's stop_m
+ *       33      1  stop: 1, unless every part is clear (below) of the cell's stop_m
  *       34      1  cameras, at most 16
  *       35      1  parts, at most 32
  *       36      4  a bit a camera: its image is too old, or there is none

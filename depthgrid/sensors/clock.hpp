@@ -3,7 +3,8 @@
 
 namespace depthgrid::sensors {
 
-/// Seconds of CLOCK_MONOTONIC: it never goes back, and does not stand for a time of day.
+/// Seconds of CLOCK_MONOTONIC: it never goes back, and does not stand for a time of day. It stands still while
+/// the computer sleeps: it must not.
 [[nodiscard]] double clock_now_s() noexcept;
 
 /// Sleeps until then, or until `longest_s` from now, whichever is first. False: it is not yet `time_s`.

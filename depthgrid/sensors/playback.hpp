@@ -15,8 +15,8 @@ enum class Pace : std::uint8_t {
 class Playback {
  public:
   /// Of what was recorded from first_s to last_s. It begins with the construction. Throws Error unless
-  /// first_s <= last_s. With `repeat` the next round begins kPause_s after the end: nothing that was there at the end
-  /// says anything of the beginning.
+  /// first_s <= last_s. With `repeat` the next round begins kPause_s after the end: the scene jumps there, and answers
+  /// of the first images of a round may stand on the end of the one before.
   Playback(double first_s, double last_s, bool repeat, Pace pace = Pace::as_recorded);
 
   static constexpr double kPause_s = 0.25;

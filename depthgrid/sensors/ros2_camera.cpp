@@ -1,8 +1,12 @@
 #include "depthgrid/sensors/ros2_camera.hpp"
 
+#include <algorithm>
 #include <exception>
+#include <span>
 #include <utility>
 
+#include "depthgrid/core/error.hpp"
+#include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/messages/serialization.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
 
@@ -15,14 +19,17 @@ std::string beside(const std::string& topic, const std::string& name) {
   return topic.substr(0, topic.rfind('/') + 1) + name;
 }
 
-/// Of images as the sensor has them: distortion is for the rig file to say.
-std::optional<PinholeCamera> intrinsics_on(dds::Node& node, const std::string& topic) {
-  dds::Subscription infos = node.subscribe(topic, messages::type_of<messages::CameraInfo>(), dds::kSensorData);
-  std::vector<std::byte> message;
-  if (!infos.wait(kLongestForInfo_s) || !infos.take(message).message) {
+/// None where the camera is not calibrated. Throws Error for images that are no pinhole's.
+std::optional<PinholeCamera> intrinsics_of(std::span<const std::byte> message, const std::string& topic) {
+  const auto info = messages::from_bytes<messages::CameraInfo>(message);
+  if (std::all_of(info.k.begin(), info.k.end(), [](double value) { return value == 0; })) {
     return std::nullopt;
   }
-  return messages::camera_model(messages::from_bytes<messages::CameraInfo>(message), false).intrinsics;
+  const messages::CameraModel model = messages::camera_model(info, topic.find("rect") != std::string::npos);
+  if (distorts(model.distortion)) {
+    fail("the lens distorts these images: take the topic of rectified ones");
+  }
+  return model.intrinsics;
 }
 
 }  // namespace
@@ -33,14 +40,33 @@ Ros2Camera::Ros2Camera(std::shared_ptr<dds::Node> node, std::string topic)
 void Ros2Camera::open() {
   images_.emplace(node_->subscribe(topic_, messages::type_of<messages::Image>(), dds::kSensorData));
   info_ = {.name = "ROS 2 topic " + topic_, .serial = topic_, .clock = "this computer's, by the messages' stamps"};
-  info_.intrinsics = intrinsics_on(*node_, beside(topic_, "camera_info"));
+  if (!calibrations_ && !intrinsics_) {
+    calibrations_.emplace(
+        node_->subscribe(beside(topic_, "camera_info"), messages::type_of<messages::CameraInfo>(), dds::kSensorData));
+    (void)calibrations_->wait(kLongestForInfo_s);
+    (void)look_for_calibration();
+  }
+  info_.intrinsics = intrinsics_;
   info_.metres_per_unit = messages::kMetresPerUnit;
   reason_.clear();
 }
 
 void Ros2Camera::close() noexcept { images_.reset(); }
 
+bool Ros2Camera::look_for_calibration() {
+  if (!calibrations_ || !calibrations_->take(message_).message) {
+    return false;
+  }
+  intrinsics_ = intrinsics_of(message_, topic_);
+  calibrations_.reset();
+  return intrinsics_.has_value();
+}
+
 Reading Ros2Camera::newest(DepthReading& reading) {
+  if (look_for_calibration()) {  // whoever opened it has to see that
+    reason_ = topic_ + ": its camera_info has come, later than it was opened";
+    return Reading::failed;
+  }
   std::int64_t taken = 0;
   while (images_->take(message_).message) {
     ++taken;
@@ -49,6 +75,12 @@ Reading Ros2Camera::newest(DepthReading& reading) {
     return Reading::nothing;
   }
   const auto image = messages::from_bytes<messages::Image>(message_);
+  if (frame_.empty()) {
+    frame_ = image.header.frame_id;
+  } else if (image.header.frame_id != frame_) {
+    fail("images of two frames come on one topic, '", printable_excerpt(frame_), "' and '",
+         printable_excerpt(image.header.frame_id), "': does a second driver publish there?");
+  }
   reading.depth = messages::depth_view(image, pixels_);
   reading.time_s = clock_time_s(image.header.stamp);
   reading.T_world_camera.reset();

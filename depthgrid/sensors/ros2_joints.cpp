@@ -4,7 +4,6 @@
 #include <exception>
 #include <utility>
 
-#include "depthgrid/core/error.hpp"
 #include "depthgrid/messages/serialization.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
 
@@ -31,7 +30,8 @@ void Ros2Joints::close() noexcept { states_.reset(); }
 
 bool Ros2Joints::read(const messages::JointState& state) {
   if (state.position.size() != state.name.size()) {
-    fail("a message has ", state.name.size(), " names and ", state.position.size(), " positions");
+    reason_ = topic_ + ": a hundred messages in a row have no position for each name";
+    return false;
   }
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const auto found = std::find(state.name.begin(), state.name.end(), joints_[i]);

@@ -48,7 +48,7 @@ struct CloseFile {
   }
 };
 
-/// A line an answer. What the disk does not take is dropped by the monitor and counted.
+/// A line an answer. What the disk does not take is counted by the monitor as passed over.
 class JsonLines final : public monitor::Output {
  public:
   JsonLines(const std::filesystem::path& file, monitor::Names names)
@@ -59,7 +59,9 @@ class JsonLines final : public monitor::Output {
   }
   void take(const monitor::CellAnswer& answer) override {
     const std::string line = monitor::json_line(answer, names_) + "\n";
-    (void)std::fputs(line.c_str(), file_.get());
+    if (std::fputs(line.c_str(), file_.get()) < 0) {
+      fail("a line was not written");
+    }
   }
 
  private:

@@ -106,7 +106,8 @@ TEST(CellFile, IntrinsicsPoseAndMarginsComeFromARigFile) {
 TEST(CellFile, TheExampleIsRight) {
   const Cell cell = parse_cell(example_cell(), "new.yaml");
   EXPECT_EQ(cell.cameras.size(), 2U);
-  EXPECT_EQ(cell.cameras[0].source, SourceKind::realsense);
+  EXPECT_EQ(cell.cameras[0].source, SourceKind::ros2);
+  EXPECT_TRUE(cell.outputs.ros2);
   EXPECT_EQ(cell.robot->joints.source, SourceKind::ros2);
 }
 
@@ -219,6 +220,20 @@ TEST(CellFile, WhatOtherFilesLackIsTold) {
   EXPECT_THAT(of("    source: simulated\n    rate_hz: 10", "    source: recording\n    recording: nowhere"),
               HasSubstr("nowhere"));
   EXPECT_THAT(of("links: moving", "links: [no_such_link]"), HasSubstr("no_such_link"));
+  // A link that has no shape cannot be asked, and is not passed over.
+  test::TemporaryFolder folder;
+  (void)folder.write("arm.urdf", R"(<robot name="arm"><link name="base"/>
+    <link name="arm"><collision><geometry><box size="0.1 0.1 0.5"/></geometry></collision></link><link name="tip"/>
+    <joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/>
+      <limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+    <joint name="f" type="fixed"><parent link="arm"/><child link="tip"/></joint></robot>)");
+  const std::string arm = with(with(whole_cell(), "urdf: kuka_lwr4", "urdf: arm.urdf"), "  tool: lwr_7_link\n", "");
+  const auto asks = [&](const std::string& links) {
+    return test::thrown_message(
+        [&] { (void)setup(parse_cell(with(arm, "links: moving", "links: " + links), folder / "cell.yaml")); });
+  };
+  EXPECT_EQ(asks("[arm]"), "");
+  EXPECT_THAT(asks("[arm, tip]"), HasSubstr("ask: links: tip has no shape in the robot's file"));
 }
 
 }  // namespace

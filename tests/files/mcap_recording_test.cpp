@@ -369,6 +369,12 @@ INSTANTIATE_TEST_SUITE_P(
                           c.tf = {{{transform("base", "wrist")}}};
                         },
                         "frame 'cam' moves: 'wrist' stands in 'base' by /tf, which changes"},
+        BrokenRecording{"CameraOnAnArmThatStoodOnce",
+                        [](Contents& c) {
+                          c.tf_static = {{{transform("map", "base"), transform("base", "cam")}}};
+                          c.tf = {{{transform("map", "base")}}};
+                        },
+                        "frame 'cam' moves: 'base' stands in 'map' by /tf, which changes"},
         BrokenRecording{"GapBetweenFrames",
                         [](Contents& c) {
                           c.tf_static = {{{transform("map", "base"), transform("wrist", "cam")}}};

@@ -45,7 +45,7 @@ TEST(CameraInfoMessage, ComesBackWithEveryLens) {
 
 TEST(CameraInfoMessage, OfRectifiedImagesPCounts) {
   CameraInfo info = camera_info(wide_camera(), {});
-  info.p = {400, 0, 310, -20, 0, 401, 230, 0, 0, 0, 1, 0};
+  info.p = {400, 0, 310, 0, 0, 401, 230, 0, 0, 0, 1, 0};
   const CameraModel camera = camera_model(info, true);
   EXPECT_FALSE(distorts(camera.distortion));
   EXPECT_EQ(camera.intrinsics.fx_px, 400);
@@ -65,6 +65,12 @@ TEST(CameraInfoMessage, RefusesWithTheReason) {
   EXPECT_EQ(why([](CameraInfo& i) { i.k[1] = 0.5; }),
             "camera_info: K[1] is 0.5, must be 0: rows fx 0 cx, 0 fy cy, 0 0 1");
   EXPECT_EQ(why([](CameraInfo& i) { i.k[8] = 2; }), "camera_info: K[8] is 2, must be 1: rows fx 0 cx, 0 fy cy, 0 0 1");
+  EXPECT_EQ(why([](CameraInfo& i) { i.p[3] = -20; }, true),
+            "camera_info: P shifts the rectified image out of its frame (Tx -20, Ty 0), must be 0; give a rig file");
+  EXPECT_EQ(why([](CameraInfo& i) { i.r = {0, -1, 0, 1, 0, 0, 0, 0, 1}; }, true),
+            "camera_info: R turns the rectified image out of its frame, must be the identity; give a rig file");
+  EXPECT_EQ(why([](CameraInfo& i) { i.r.fill(0); }, true), "") << "not set";
+  EXPECT_EQ(why([](CameraInfo& i) { i.p[3] = -20; }), "") << "images as the sensor has them";
   EXPECT_EQ(why([](CameraInfo& i) { i.p[4] = 1; }, true),
             "camera_info: P[4] is 1, must be 0: rows fx 0 cx Tx, 0 fy cy Ty, 0 0 1 0");
   EXPECT_EQ(why([](CameraInfo& i) { i.distortion_model = "omni\x1b"; }),

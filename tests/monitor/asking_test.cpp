@@ -25,7 +25,9 @@ using avoidance::MotionLimit;
 /// What a monitor consists of, but that nobody asks by itself.
 struct Cell {
   /// As long as nothing else is said no image and no joint state gets too old, however slow the machine is.
-  explicit Cell(double ages_s = 30) : setup(cell::setup(cell::parse_cell(test::small_cell(), "small.yaml"))) {
+  explicit Cell(double ages_s = 30, double time_error_s = 0.005)
+      : setup(cell::setup(cell::parse_cell(test::small_cell(), "small.yaml"))) {
+    setup.exposure.time_error_s = time_error_s;
     setup.options.max_image_age_s = ages_s;
     sensors::SimulatedCellSettings scene;
     scene.robot = setup.robot;
@@ -119,6 +121,44 @@ TEST(Asking, NoAnswerIsFartherThanTheTruth) {
       }
     }
   }
+}
+
+// The joints' clock may be off by what the cell declares: the arm may be where it was, or will be, so much earlier or
+// later.
+TEST(Asking, PartsHoldTheArmHoweverItsClockIsOff) {
+  constexpr double kTimeError_s = 0.02;
+  Cell cell(30, kTimeError_s);
+  const robot::RobotModel& model = cell.setup.robot->model;
+  const auto q_at = [&](double time_s) {
+    std::vector<double> q(model.joints().size());
+    for (std::size_t j = 0; j < q.size(); ++j) {
+      q[j] = 0.1 * static_cast<double>(j) + 0.8 * time_s;
+    }
+    return q;
+  };
+  for (int n = 0; n <= 100; ++n) {
+    ASSERT_TRUE(cell.history->add(10 + 0.01 * n, q_at(0.01 * n)));
+  }
+  const CellAnswer& answer = cell.asking->ask(11);
+  std::size_t compared = 0;
+  for (const double off_s : {-kTimeError_s, 0.0, kTimeError_s}) {
+    std::vector<Pose> T_world_link(model.links().size(), Pose::Identity());
+    ASSERT_TRUE(cell.setup.robot->link_poses(q_at(1 + off_s), T_world_link));
+    for (std::size_t i = 0; i < answer.parts_world.size(); ++i) {
+      if (!cell.setup.parts[i].on_robot) {
+        continue;
+      }
+      const robot::LinkCapsule& link = *cell.setup.parts[i].on_robot;
+      for (const Eigen::Vector3d& end : {link.capsule.a, link.capsule.b}) {
+        const Eigen::Vector3d at = T_world_link[link.link] * end;
+        EXPECT_LE(distance_to_axis(answer.parts_world[i], at) + link.capsule.radius_m,
+                  answer.parts_world[i].radius_m + 1e-9)
+            << cell.setup.parts[i].name << " at " << off_s;
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 12U);
 }
 
 TEST(Asking, AgesAndSkewAreThoseOfTheImages) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dds/loopback.hpp"
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/ros2_camera.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
@@ -119,6 +120,71 @@ TEST_F(Ros2Source, CameraTakesItsIntrinsicsFromTheTopicBesideIt) {
   EXPECT_NEAR(camera.info().intrinsics->cx_px, 32, 1e-12);
 }
 
+// The driver begins to speak after the camera was opened: it fails once, and the next open() knows the calibration.
+TEST_F(Ros2Source, CalibrationThatComesLateIsNotMissed) {
+  Ros2Camera camera(node_, "/late/image");
+  camera.open();
+  EXPECT_FALSE(camera.info().intrinsics.has_value());
+  dds::Publisher infos = driver_.publish("/late/camera_info", type_of<messages::CameraInfo>(), dds::kReliable);
+  dds::Publisher images = driver_.publish("/late/image", type_of<messages::Image>(), dds::kReliable);
+  messages::CameraModel model;
+  model.intrinsics = {4, 3, 5, 5, 2, 1.5};
+  send(infos, messages::camera_info(model, {}));
+  const std::vector<std::uint16_t> pixels(12, 1500);
+  DepthReading reading;
+  Reading found = Reading::nothing;
+  ASSERT_TRUE(becomes([&] {
+    send(images, image_of(pixels, 4, clock_now_s()));
+    return (found = camera.next(reading, 0.1)) == Reading::failed;
+  }));
+  EXPECT_NE(camera.reason().find("camera_info has come"), std::string_view::npos) << camera.reason();
+  camera.close();
+  camera.open();
+  ASSERT_TRUE(camera.info().intrinsics.has_value());
+  EXPECT_EQ(camera.info().intrinsics->width_px, 4);
+}
+
+TEST_F(Ros2Source, ImagesOfTwoFramesOnOneTopicAreRefused) {
+  dds::Publisher images = driver_.publish("/two/image", type_of<messages::Image>(), dds::kReliable);
+  Ros2Camera camera(node_, "/two/image");
+  camera.open();
+  const std::vector<std::uint16_t> pixels(12, 1500);
+  messages::Image image = image_of(pixels, 4, clock_now_s());
+  image.header.frame_id = "left";
+  send(images, image);
+  DepthReading reading;
+  Reading found = Reading::nothing;
+  ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.1)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::got) << camera.reason();
+  image.header.frame_id = "right";
+  send(images, image);
+  ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.1)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::failed);
+  EXPECT_NE(camera.reason().find("'left' and 'right'"), std::string_view::npos) << camera.reason();
+}
+
+TEST_F(Ros2Source, ALensThatDistortsIsRefused) {
+  dds::Publisher infos = driver_.publish("/wide/camera_info", type_of<messages::CameraInfo>(), dds::kLatched);
+  messages::CameraModel model;
+  model.intrinsics = {64, 48, 60, 61, 32, 24};
+  model.distortion = make_distortion(Distortion::Model::rational, std::vector<double>{-0.2, 0.05, 0, 0, 0, 0, 0, 0});
+  const std::vector<std::byte> message = messages::to_bytes(messages::camera_info(model, {}));
+  std::thread teller([&] {
+    for (int n = 0; n < 60; ++n) {
+      (void)infos.write(message);
+      usleep(20'000);
+    }
+  });
+  Ros2Camera camera(node_, "/wide/image");
+  try {
+    camera.open();
+    ADD_FAILURE() << "opened";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("the lens distorts these images"), std::string::npos) << error.what();
+  }
+  teller.join();
+}
+
 TEST_F(Ros2Source, CameraThatSendsColoursHasFailedAndSaysSo) {
   dds::Publisher images = driver_.publish("/camera/image", type_of<messages::Image>(), dds::kReliable);
   Ros2Camera camera(node_, "/camera/image");
@@ -179,10 +245,12 @@ TEST_F(Ros2Source, JointsOfAnotherRobotHaveFailedAndSaySo) {
   joints.close();
   joints.open();
   other.position.clear();
-  send(states, other);
-  ASSERT_TRUE(becomes([&] { return (found = joints.next(reading, 0.1)) != Reading::nothing; }));
+  ASSERT_TRUE(becomes([&] {
+    send(states, other);
+    return (found = joints.next(reading, 0.1)) != Reading::nothing;
+  }));
   EXPECT_EQ(found, Reading::failed);
-  EXPECT_NE(joints.reason().find("1 names and 0 positions"), std::string_view::npos) << joints.reason();
+  EXPECT_NE(joints.reason().find("no position for each name"), std::string_view::npos) << joints.reason();
 }
 
 }  // namespace
