@@ -27,7 +27,7 @@ constexpr const char* kRosTool = "the Python package rosbags reads it";
 constexpr std::string_view kMcapBegin = "\x89MCAP0\r\n";
 constexpr std::array<Container, 6> kContainers{{
     {".bag", "#ROSBAG V", "a ROS 1 bag, as rosbag and RealSense cameras write it", kRosTool},
-    {".db3", "", "a ROS 2 bag", kRosTool},
+    {".db3", "", "a ROS 2 bag", "or let rosbags-convert or ros2 bag convert make an MCAP file of it, which is read"},
     {".oni", "NI10", "an OpenNI recording of a Kinect or Xtion", "OpenNI 2 reads it"},
     {".mkv", "", "a Matroska recording, as Azure Kinects write it", "the Azure Kinect SDK reads it"},
     {".svo", "", "a recording of a ZED camera", "the ZED SDK reads it"},

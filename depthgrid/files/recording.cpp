@@ -39,10 +39,10 @@ Recording::Recording(const std::filesystem::path& path, const RecordingOptions& 
   const std::string name = rig_file_.string();
   const std::filesystem::path folder = rig_file_.parent_path();
   if (mcap_file_.empty()) {
-    if (options.mcap.is_set()) {
+    refuse_foreign_recording(path);
+    if (options.mcap.is_set() && std::filesystem::exists(rig_file_)) {
       fail_choice(name, ": topics, world frame, tolerance and rig file are chosen of MCAP files only");
     }
-    refuse_foreign_recording(path);
     file_ = select_cameras(load_rig(rig_file_), options.camera_ids, name);
     table_ = std::make_shared<const FrameTable>(file_, folder, name);
   } else {

@@ -134,9 +134,16 @@ void check(const std::string& file) {
   if (sources.joints != nullptr) {
     attempt([&] { look_at_joints(*sources.joints, setup.robot->model); });
   }
+  // As run begins.
+  attempt([&] {
+    const monitor::Monitor begun(setup, monitor::monitor_settings(cell), std::move(sources));
+    if (cell.outputs.udp) {
+      (void)monitor::udp_output(*cell.outputs.udp);
+    }
+  });
   if (!failures.empty()) {
-    fail(failures.size(), " of ", sources.cameras.size() + (sources.joints != nullptr ? 1 : 0),
-         " sources failed, the first: ", failures.front());
+    fail(failures.size(), failures.size() == 1 ? " thing" : " things",
+         " would keep the cell from running, the first: ", failures.front());
   }
 }
 

@@ -113,7 +113,11 @@ std::string pair_summary(const std::vector<const PairSurvey*>& pairs) {
              "mm");
 }
 
-std::string suggestion(const RecordingInfo& info, const std::vector<const PairSurvey*>& pairs) {
+std::string pair_name(const Rig& rig, const PairSurvey& pair) {
+  return rig.cameras[pair.a].id + " to " + rig.cameras[pair.b].id;
+}
+
+std::string suggestion(const Rig& rig, const RecordingInfo& info, const std::vector<const PairSurvey*>& pairs) {
   SensorMargin margin;
   for (const auto& camera : info.cameras) {
     const SensorMargin own = camera.noise.suggested_margin();
@@ -121,16 +125,23 @@ std::string suggestion(const RecordingInfo& info, const std::vector<const PairSu
     margin.quadratic_per_m = std::max(margin.quadratic_per_m, own.quadratic_per_m);
   }
   double pose_m = 0;
+  std::string apart;
   for (const auto* pair : pairs) {
     const double own_m = suggested_pose_margin_m(pair->agreement);
     pose_m = std::isnan(own_m) ? pose_m : std::max(pose_m, own_m);
+    const PairAgreement& g = pair->agreement;
+    if (g.planes > 0 && 2 * static_cast<std::int64_t>(g.intrusion_m.count()) < static_cast<std::int64_t>(g.planes)) {
+      apart += "  ! " + pair_name(rig, *pair) +
+               ": most surfaces that both see are not where the other has them: are the poses right?\n";
+    }
   }
   const double up_m = std::ceil(pose_m * 1e3) * 1e-3;
   std::string text =
       "These figures suggest (no more than that: bias that all cameras share cannot be seen here)\n" +
       line("  --margin-constant %.4f --margin-quadratic %.5f", margin.constant_m, margin.quadratic_per_m);
-  text += pairs.empty() ? "\n" : line(" --margin-translation %.3f\n", up_m);
-  return text;
+  // No margin makes up for poses that are wrong.
+  text += pairs.empty() || !apart.empty() ? "\n" : line(" --margin-translation %.3f\n", up_m);
+  return text + apart;
 }
 
 }  // namespace
@@ -187,7 +198,7 @@ std::string to_text(const files::Recording& recording, const RecordingInfo& info
     text += pairs.size() > kPairsInTable ? pair_summary(pairs) : std::string();
     text += "\n";
   }
-  return text + suggestion(info, pairs);
+  return text + suggestion(rig, info, pairs);
 }
 
 // NOLINTEND(cppcoreguidelines-pro-type-vararg, cert-dcl50-cpp)

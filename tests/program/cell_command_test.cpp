@@ -62,7 +62,7 @@ TEST(CellCommand, ACheckThatFailsSaysWhatAndGoesOn) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, ::testing::ContainsRegex("failed: left: opened, and then: .*left_00"));
   EXPECT_THAT(result.out, HasSubstr("right: recording"));
-  EXPECT_THAT(result.err, HasSubstr("depthgrid: 1 of 2 sources failed, the first: left"));
+  EXPECT_THAT(result.err, HasSubstr("depthgrid: 1 thing would keep the cell from running, the first: left"));
 }
 
 TEST(CellCommand, NewWritesOneAndNothingOver) {
@@ -82,11 +82,13 @@ TEST(CellCommand, ASourceThatIsNotBuiltInIsTold) {
   ASSERT_EQ(run_command("cell new cell.yaml", folder).exit_code, 0);
   edit(folder, "cell.yaml", "urdf: panda.urdf", "urdf: kuka_lwr4");
   edit(folder, "cell.yaml", "tool: panda_hand", "tool: lwr_7_link");
+  edit(folder, "cell.yaml", "source: ros2 ", "source: realsense ");
+  edit(folder, "cell.yaml", "topic: /left/depth/image_rect_raw", "serial: \"7\"");
   const CommandResult result = run_command("run cell.yaml --seconds 1", folder);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(
       result.err,
-      HasSubstr("cell.yaml:13:5: cameras[0]: source: realsense is not part of this build: recording, simulated"));
+      HasSubstr("cell.yaml:13:5: cameras[0]: source: realsense is not part of this build: recording, simulated, ros2"));
 }
 
 TEST(RunCommand, AnswersARecordingAndSumsUp) {

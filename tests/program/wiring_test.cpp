@@ -153,6 +153,20 @@ TEST(Wiring, InfoLooksAtEveryFrame) {
   EXPECT_THAT(result.out, ::testing::ContainsRegex(pair("left to right", "[0-9]+", "(4|5)[0-9]")));
 }
 
+// No margin makes up for a camera that stands a metre from where the rig has it.
+TEST(Wiring, InfoSuggestsNoPoseMarginForPosesThatAreWrong) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  for (const std::string frame : {"005", "006"}) {
+    write(folder, "right_" + frame + ".png", wall_mm(3000));
+  }
+  const auto result = run_command("info .", folder);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::HasSubstr("  ! left to right: most surfaces that both see are not where the other "
+                                               "has them: are the poses right?\n"));
+  EXPECT_EQ(result.out.find("--margin-translation"), std::string::npos) << result.out;
+}
+
 TEST(Wiring, InfoLeavesOutWhatItIsToldTo) {
   const TemporaryFolder folder;
   write_wall(folder);
