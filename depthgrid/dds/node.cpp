@@ -72,6 +72,7 @@ std::vector<Guid> guids_of_those_there(std::vector<End>& ends) {
            std::memcmp(guid.v, end.guid.data(), end.guid.size()) != 0;
   });
   std::vector<Guid> guids;
+  guids.reserve(ends.size());
   for (const End& end : ends) {
     guids.push_back(end.guid);
   }
