@@ -25,11 +25,6 @@ std::string number_text(double value) {
   return error == std::errc{} ? std::string(digits.data(), end) : "?";
 }
 
-std::string shortened(const std::string& text) {
-  constexpr std::size_t kLongest = 60;
-  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
-}
-
 std::string with_hint(std::string_view hint) { return hint.empty() ? "" : ": " + std::string(hint); }
 
 std::string line_of(const YAML::Mark& mark) { return "line " + std::to_string(mark.line + 1); }
@@ -48,7 +43,7 @@ double finite(const YAML::Node& node, const std::string& where, std::string_view
   const std::string word = scalar(node, where, hint);
   const std::optional<double> value = parse_number<double>(word);
   if (!value || !std::isfinite(*value)) {
-    fail(where, ": '", shortened(word), "' must be a finite number", with_hint(hint));
+    fail(where, ": '", printable_excerpt(word), "' must be a finite number", with_hint(hint));
   }
   return *value;
 }
@@ -69,7 +64,7 @@ Section::Section(const YAML::Node& node, std::string path, std::string file, std
     const YAML::Node& key = item.first;
     const std::string name = key.IsScalar() ? key.Scalar() : "";
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      fail(at(file_, key.Mark()), path_.empty() ? "" : path_ + ": ", "unknown key '", shortened(name), "'",
+      fail(at(file_, key.Mark()), path_.empty() ? "" : path_ + ": ", "unknown key '", printable_excerpt(name), "'",
            suggestion(name, known));
     }
     if (has(name)) {
@@ -166,7 +161,7 @@ std::string Section::word(std::string_view key, std::span<const std::string_view
   const Entry entry = need(key, hint);
   std::string value = scalar(entry.value, place(key), hint);
   if (std::find(words.begin(), words.end(), value) == words.end()) {
-    refuse(key, "'", shortened(value), "' is not known", suggestion(value, words));
+    refuse(key, "'", printable_excerpt(value), "' is not known", suggestion(value, words));
   }
   show(key, value, "", line_of(entry.mark));
   return value;

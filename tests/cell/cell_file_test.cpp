@@ -209,6 +209,14 @@ TEST(CellFile, TextsThatAreNoCellAreRefused) {
   }
 }
 
+TEST(CellFile, KeysThatDoNotPrintAreWrittenOut) {
+  using namespace std::string_view_literals;
+  EXPECT_THAT(test::thrown_message([] { (void)parse_cell(":9N\0nmoving: "sv, "cell.yaml"); }),
+              StartsWith(R"(cell.yaml:1:1: unknown key ':9N\nmoving')"));
+  EXPECT_THAT(test::thrown_message([] { (void)parse_cell("\"a\\nb\": 1", "cell.yaml"); }),
+              StartsWith(R"(cell.yaml:1:1: unknown key 'a\nb')"));
+}
+
 TEST(CellFile, WhatOtherFilesLackIsTold) {
   const auto of = [](const std::string& what, const std::string& by) {
     return test::thrown_message([&] { (void)setup(parse_cell(with(whole_cell(), what, by), "cell.yaml")); });
