@@ -144,7 +144,8 @@ Source open_memory(std::span<const std::byte> png, const std::string& name) {
     fail(name, ": is empty (0 bytes), needs to be a 16-bit grayscale PNG");
   }
   // Opened for reading, so that nothing is written to it.
-  auto* const begin = const_cast<std::byte*>(png.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): fmemopen() serves writing, too
+  auto* const begin = const_cast<std::byte*>(png.data());
   InputStream stream(::fmemopen(begin, png.size(), "rb"));
   if (stream == nullptr) {
     fail(name, ": cannot be read: ", std::generic_category().message(errno));

@@ -15,6 +15,12 @@ namespace {
 
 constexpr double kLongestForInfo_s = 2;
 
+bool same(const std::optional<PinholeCamera>& a, const std::optional<PinholeCamera>& b) {
+  return a.has_value() == b.has_value() &&
+         (!a || (a->width_px == b->width_px && a->height_px == b->height_px && a->fx_px == b->fx_px &&
+                 a->fy_px == b->fy_px && a->cx_px == b->cx_px && a->cy_px == b->cy_px));
+}
+
 std::string beside(const std::string& topic, const std::string& name) {
   return topic.substr(0, topic.rfind('/') + 1) + name;
 }
@@ -40,11 +46,15 @@ Ros2Camera::Ros2Camera(std::shared_ptr<dds::Node> node, std::string topic)
 void Ros2Camera::open() {
   images_.emplace(node_->subscribe(topic_, messages::type_of<messages::Image>(), dds::kSensorData));
   info_ = {.name = "ROS 2 topic " + topic_, .serial = topic_, .clock = "this computer's, by the messages' stamps"};
-  if (!calibrations_ && !intrinsics_) {
+  if (!calibrations_) {
     calibrations_.emplace(
         node_->subscribe(beside(topic_, "camera_info"), messages::type_of<messages::CameraInfo>(), dds::kSensorData));
     (void)calibrations_->wait(kLongestForInfo_s);
-    (void)look_for_calibration();
+  }
+  (void)has_other_calibration();
+  if (!refused_.empty()) {
+    images_.reset();
+    fail(refused_);
   }
   info_.intrinsics = intrinsics_;
   info_.metres_per_unit = messages::kMetresPerUnit;
@@ -53,18 +63,29 @@ void Ros2Camera::open() {
 
 void Ros2Camera::close() noexcept { images_.reset(); }
 
-bool Ros2Camera::look_for_calibration() {
-  if (!calibrations_ || !calibrations_->take(message_).message) {
+// A calibration that was refused stays refused, however often the camera is opened, until the driver says another.
+bool Ros2Camera::has_other_calibration() {
+  bool is_told = false;
+  while (calibrations_->take(message_).message) {
+    is_told = true;
+  }
+  if (!is_told) {
     return false;
   }
-  intrinsics_ = intrinsics_of(message_, topic_);
-  calibrations_.reset();
-  return intrinsics_.has_value();
+  const std::optional<PinholeCamera> before = std::exchange(intrinsics_, std::nullopt);
+  refused_.clear();
+  try {
+    intrinsics_ = intrinsics_of(message_, topic_);
+  } catch (const Error& error) {
+    refused_ = error.what();
+  }
+  return !refused_.empty() || !same(before, intrinsics_);
 }
 
 Reading Ros2Camera::newest(DepthReading& reading) {
-  if (look_for_calibration()) {  // whoever opened it has to see that
-    reason_ = topic_ + ": its camera_info has come, later than it was opened";
+  if (has_other_calibration()) {  // whoever opened it has to see that
+    reason_ = topic_ + ": " +
+              (refused_.empty() ? "its camera_info says another calibration than when it was opened" : refused_);
     return Reading::failed;
   }
   std::int64_t taken = 0;

@@ -15,9 +15,9 @@ namespace depthgrid::sensors {
 
 /// Images of sensor_msgs/Image: 16UC1 in millimetres, 32FC1 in metres. Their stamps are taken for the middle of the
 /// exposure, by this computer's clock. Intrinsics are those of the topic camera_info beside it, where one comes within
-/// two seconds of the first open(); one that comes later ends next() as failed, and the next open() knows it. A topic
-/// with "rect" in its name has those of rectified images. Images of a lens that distorts are refused: they have to be
-/// rectified. So are images of two frames on one topic.
+/// two seconds of the first open(); another one that comes later ends next() as failed, and the next open() knows it. A
+/// topic with "rect" in its name has those of rectified images. Images of a lens that distorts are refused: they have
+/// to be rectified. So are images of two frames on one topic.
 class Ros2Camera final : public DepthSource {
  public:
   /// `topic`: "/camera/depth/image_raw".
@@ -31,17 +31,18 @@ class Ros2Camera final : public DepthSource {
 
  private:
   [[nodiscard]] Reading newest(DepthReading& reading);
-  /// Whether intrinsics are told that were not known.
-  [[nodiscard]] bool look_for_calibration();
+  /// Whether camera_info says something else than at the last look, or what is refused.
+  [[nodiscard]] bool has_other_calibration();
 
   std::shared_ptr<dds::Node> node_;
   std::string topic_;
   std::optional<dds::Subscription> images_;
   std::vector<std::byte> message_;
   messages::DepthPixels pixels_;
-  std::optional<PinholeCamera> intrinsics_;        ///< once they were told
-  std::optional<dds::Subscription> calibrations_;  ///< until then
-  std::string frame_;                              ///< of the first image
+  std::optional<PinholeCamera> intrinsics_;  ///< as they were told last
+  std::optional<dds::Subscription> calibrations_;
+  std::string refused_;  ///< why the calibration that was told last is; empty: it is not
+  std::string frame_;    ///< of the first image
   SourceInfo info_;
   std::string reason_;
 };
