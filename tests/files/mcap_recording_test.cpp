@@ -205,6 +205,43 @@ TEST(McapRecording, RealRecordingsComeBackToTheBit) {
   expect_same_answers(answers_of(before), answers_of(after));
 }
 
+// A frame's images are in chunks of their own, and the memory of one chunk is used again for the next: each has to stay
+// as it is until the next frame is read. Names of both lengths, so that pixels lie at even places of some messages.
+TEST(McapRecording, AnImageStaysWhileTheOtherCamerasIsRead) {
+  for (const std::string& more : {std::string(), std::string("x"), std::string("xx"), std::string("xxx")}) {
+    const TemporaryFolder folder;
+    RigFile file;
+    file.frame_count = 1;
+    file.count_stated = true;
+    file.rate_hz = 10;
+    for (char name = 'a'; name < 'm'; ++name) {
+      RigCamera camera;
+      camera.id = name + more;
+      camera.intrinsics = {64, 48, 60, 60, 32, 24};
+      file.rig.cameras.push_back(camera);
+      file.depth_files.push_back(camera.id + "_%03d.png");
+    }
+    save_rig(file, folder / "rig.json");
+    for (std::size_t k = 0; k < 12; ++k) {
+      write_png_gray16(folder / depth_file_name(file.depth_files[k], 0), 64, 48,
+                       std::vector<std::uint16_t>(std::size_t{64} * 48, static_cast<std::uint16_t>(1000 + 250 * k)));
+    }
+    Recording before(folder.path());
+    for (const std::size_t chunk_bytes : {1, 400, 900, 7000}) {
+      save_mcap(before, folder / "a.mcap", {.compression = McapCompression::none, .chunk_bytes = chunk_bytes});
+      Recording after(folder / "a.mcap", chosen(with_rig(folder / "rig.json")));
+      const auto frames = after.read(0);
+      for (std::size_t k = 0; k < 12; ++k) {
+        const auto expected = static_cast<float>(1 + 0.25 * static_cast<double>(k));
+        for (const auto& [u, v] : {std::pair(0, 0), std::pair(31, 20), std::pair(63, 47)}) {
+          EXPECT_EQ(measured_depth_m(frames[k].depth, after.rig().cameras[k].rule, u, v), expected)
+              << k << more << ", chunks of " << chunk_bytes;
+        }
+      }
+    }
+  }
+}
+
 TEST(McapRecording, IsReadFromTheFolderOfABag) {
   const TemporaryFolder folder;
   write_folder(folder);
