@@ -7,13 +7,11 @@
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/usable_frame.hpp"
+#include "depthgrid/monitor/source_loop.hpp"
 #include "depthgrid/sensors/clock.hpp"
 
 namespace depthgrid::monitor {
 namespace {
-
-/// So long a thread waits for its source at most, before it looks whether it shall stop.
-constexpr double kSlice_s = 0.05;
 
 void count(std::atomic<std::int64_t>& counter, std::int64_t by = 1) noexcept {
   counter.fetch_add(by, std::memory_order_relaxed);
@@ -40,18 +38,6 @@ SourceCounts SourceCounters::now() const noexcept {
   return {taken.load(std::memory_order_relaxed),   skipped.load(std::memory_order_relaxed),
           refused.load(std::memory_order_relaxed), dropped.load(std::memory_order_relaxed),
           opened.load(std::memory_order_relaxed),  failures.load(std::memory_order_relaxed)};
-}
-
-double Backoff::next_s() noexcept {
-  const double now_s = wait_s_;
-  wait_s_ = std::min(2 * wait_s_, kLongest_s);
-  return now_s;
-}
-
-void wait_s(double seconds, const std::stop_token& stop) noexcept {
-  const double end_s = sensors::clock_now_s() + seconds;
-  while (!stop.stop_requested() && !sensors::wait_until(end_s, kSlice_s)) {
-  }
 }
 
 CameraLine::CameraLine(std::unique_ptr<sensors::DepthSource> source, const RigCamera& camera,
@@ -115,44 +101,20 @@ bool CameraLine::open() noexcept {
   return false;
 }
 
-void CameraLine::run(const std::stop_token& stop) noexcept {
-  Backoff backoff;
-  bool is_open = false;
-  sensors::DepthReading reading;
-  while (!stop.stop_requested()) {
-    if (!is_open) {
-      is_open = open();
-      if (!is_open) {
-        wait_s(backoff.next_s(), stop);
-        continue;
-      }
-    }
-    switch (source_->next(reading, kSlice_s)) {
-      case sensors::Reading::got:
-        take(reading);
-        backoff.reset();
-        break;
-      case sensors::Reading::nothing:
-        break;
-      case sensors::Reading::ended:
-        if (state() != CameraState::ended) {
-          state_.store(CameraState::ended, std::memory_order_relaxed);
-          tell(EventKind::source_ended, "at its end");
-        }
-        wait_s(kSlice_s, stop);
-        break;
-      case sensors::Reading::failed:
-        count(counters_.failures);
-        state_.store(CameraState::failed, std::memory_order_relaxed);
-        tell(EventKind::source_failed, source_->reason());
-        source_->close();
-        is_open = false;
-        wait_s(backoff.next_s(), stop);
-        break;
-    }
+void CameraLine::has_ended() noexcept {
+  if (state() != CameraState::ended) {
+    state_.store(CameraState::ended, std::memory_order_relaxed);
+    tell(EventKind::source_ended, "at its end");
   }
-  source_->close();
 }
+
+void CameraLine::has_failed() noexcept {
+  count(counters_.failures);
+  state_.store(CameraState::failed, std::memory_order_relaxed);
+  tell(EventKind::source_failed, source_->reason());
+}
+
+void CameraLine::run(const std::stop_token& stop) noexcept { follow(*source_, sensors::DepthReading{}, *this, stop); }
 
 double CameraLine::share_without_reading(const DepthView& depth) noexcept {
   normalise(with_stride(depth), camera_.rule, measured_m_);

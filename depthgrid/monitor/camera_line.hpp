@@ -33,22 +33,6 @@ struct SourceCounters {
   [[nodiscard]] SourceCounts now() const noexcept;
 };
 
-/// How long to wait before a source is opened again: 0.1 s, then twice as long each time, at most 2 s.
-class Backoff {
- public:
-  [[nodiscard]] double next_s() noexcept;
-  void reset() noexcept { wait_s_ = kFirst_s; }
-
-  static constexpr double kFirst_s = 0.1;
-  static constexpr double kLongest_s = 2;
-
- private:
-  double wait_s_ = kFirst_s;
-};
-
-/// Sleeps for that long, or until it is told to stop.
-void wait_s(double seconds, const std::stop_token& stop) noexcept;
-
 struct CameraLineSettings {
   std::size_t camera = 0;
   double max_image_age_s = 0.5;
@@ -72,8 +56,12 @@ class CameraLine {
   [[nodiscard]] EventQueue& events() noexcept { return events_; }
 
  private:
+  template <class Source, class Reading, class Line>
+  friend void follow(Source& source, Reading reading, Line& line, const std::stop_token& stop) noexcept;
   [[nodiscard]] bool open() noexcept;
   void take(const sensors::DepthReading& reading) noexcept;
+  void has_ended() noexcept;
+  void has_failed() noexcept;
   [[nodiscard]] bool is_refused(const sensors::DepthReading& reading, bool is_empty) noexcept;
   [[nodiscard]] double share_without_reading(const DepthView& depth) noexcept;
   /// With an event where it is another one than before.

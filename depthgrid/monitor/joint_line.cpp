@@ -2,15 +2,10 @@
 
 #include <exception>
 
+#include "depthgrid/monitor/source_loop.hpp"
 #include "depthgrid/sensors/clock.hpp"
 
 namespace depthgrid::monitor {
-namespace {
-
-constexpr double kJointSlice_s = 0.05;
-
-}  // namespace
-
 void JointLine::tell(EventKind kind, std::string_view words) noexcept {
   Event event;
   event.time_s = sensors::clock_now_s();
@@ -49,43 +44,18 @@ void JointLine::take(const sensors::JointReading& reading) noexcept {
   refusing_ = !of_now;
 }
 
-void JointLine::run(const std::stop_token& stop) noexcept {
-  Backoff backoff;
-  bool is_open = false;
-  bool has_ended = false;
-  sensors::JointReading reading;
-  while (!stop.stop_requested()) {
-    if (!is_open) {
-      is_open = open();
-      if (!is_open) {
-        wait_s(backoff.next_s(), stop);
-        continue;
-      }
-    }
-    switch (source_->next(reading, kJointSlice_s)) {
-      case sensors::Reading::got:
-        take(reading);
-        backoff.reset();
-        break;
-      case sensors::Reading::nothing:
-        break;
-      case sensors::Reading::ended:
-        if (!has_ended) {
-          tell(EventKind::source_ended, "at their end");
-        }
-        has_ended = true;
-        wait_s(kJointSlice_s, stop);
-        break;
-      case sensors::Reading::failed:
-        counters_.failures.fetch_add(1, std::memory_order_relaxed);
-        tell(EventKind::source_failed, source_->reason());
-        source_->close();
-        is_open = false;
-        wait_s(backoff.next_s(), stop);
-        break;
-    }
+void JointLine::has_ended() noexcept {
+  if (!has_ended_) {
+    tell(EventKind::source_ended, "at their end");
   }
-  source_->close();
+  has_ended_ = true;
 }
+
+void JointLine::has_failed() noexcept {
+  counters_.failures.fetch_add(1, std::memory_order_relaxed);
+  tell(EventKind::source_failed, source_->reason());
+}
+
+void JointLine::run(const std::stop_token& stop) noexcept { follow(*source_, sensors::JointReading{}, *this, stop); }
 
 }  // namespace depthgrid::monitor

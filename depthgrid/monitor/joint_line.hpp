@@ -28,14 +28,19 @@ class JointLine {
   [[nodiscard]] EventQueue& events() noexcept { return events_; }
 
  private:
+  template <class Source, class Reading, class Line>
+  friend void follow(Source& source, Reading reading, Line& line, const std::stop_token& stop) noexcept;
   [[nodiscard]] bool open() noexcept;
   void take(const sensors::JointReading& reading) noexcept;
+  void has_ended() noexcept;
+  void has_failed() noexcept;
   void tell(EventKind kind, std::string_view words) noexcept;
 
   std::unique_ptr<sensors::JointSource> source_;
   robot::JointHistory& history_;
   double max_age_s_;
   bool refusing_ = false;
+  bool has_ended_ = false;
   EventQueue events_;
   SourceCounters counters_;
   std::atomic<double> newest_s_{Proximity::kNaN};
