@@ -119,7 +119,8 @@ struct Ros2Entry {
 
 struct OutputEntry {
   std::optional<UdpEntry> udp{};
-  std::filesystem::path jsonl{};  ///< empty: none
+  std::filesystem::path jsonl{};   ///< empty: none
+  std::filesystem::path record{};  ///< an MCAP file that is made; empty: none. "{time}" in its name is the time of day
   bool terminal = true;
   bool ros2 = false;  ///< topics of the node
 };
@@ -128,6 +129,7 @@ struct OutputEntry {
 /// - Paths are absolute, or relative to the working folder as the file's own path is.
 struct Cell {
   std::filesystem::path file{};
+  std::string text{};  ///< what the file says
   std::string name{};
   std::vector<CameraEntry> cameras{};
   std::optional<RobotEntry> robot{};

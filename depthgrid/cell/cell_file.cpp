@@ -38,7 +38,7 @@ constexpr std::array<std::string_view, 3> kMemoryKeys{"start", "voxel_m", "thinn
 constexpr std::array<std::string_view, 6> kAskKeys{"rate_hz", "rho_m", "resolution_m", "stop_m", "links", "points"};
 constexpr std::array<std::string_view, 3> kPointKeys{"name", "at_m", "radius_m"};
 constexpr std::array<std::string_view, 2> kAgeKeys{"image_s", "joints_s"};
-constexpr std::array<std::string_view, 4> kOutputKeys{"udp", "jsonl", "terminal", "ros2"};
+constexpr std::array<std::string_view, 5> kOutputKeys{"udp", "jsonl", "record", "terminal", "ros2"};
 constexpr std::array<std::string_view, 4> kRos2Keys{"node", "namespace", "domain", "frame"};
 constexpr std::array<std::string_view, 2> kUdpKeys{"host", "port"};
 
@@ -347,6 +347,9 @@ OutputEntry outputs_of(const Section& section, const std::filesystem::path& fold
   if (section.has("jsonl")) {
     outputs.jsonl = folder / section.text("jsonl", "a file, or - for standard output");
   }
+  if (section.has("record")) {
+    outputs.record = folder / section.text("record", "an MCAP file to be made: run-{time}.mcap");
+  }
   outputs.terminal = section.yes("terminal", true);
   outputs.ros2 = section.yes("ros2", false);
   return outputs;
@@ -381,6 +384,7 @@ Cell parse_cell(std::string_view text, const std::filesystem::path& file) {
   const std::filesystem::path folder = file.parent_path();
   Cell cell;
   cell.file = file;
+  cell.text = text;
   const Section section(text, file.string(), cell.shown, kCellKeys);
   cell.name = section.text("name", "what this cell is called");
   const std::optional<double> smallest_m = section.number_if("smallest_obstacle_m", {0, 1}, "m");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,56 +39,6 @@ messages::TransformStamped place_of(const RigCamera& camera, const std::string& 
   return stamped;
 }
 
-/// One camera's pixels, in memory that is used again.
-class ImageMessage {
- public:
-  /// A view of `view` or of this.
-  messages::Image make(const DepthView& view, const RigCamera& camera, messages::Header header) {
-    messages::Image image;
-    image.header = std::move(header);
-    image.width = static_cast<std::uint32_t>(view.width_px);
-    image.height = static_cast<std::uint32_t>(view.height_px);
-    MeasurementRule rule;
-    rule.invalid_units = camera.rule.invalid_units;
-    if (view.format == DepthFormat::uint16_units && view.metres_per_unit == messages::kMetresPerUnit) {
-      units_.clear();
-      each_pixel(view, [&](int u, int v) {
-        const bool measured = measured_depth_m(view, rule, u, v).has_value();
-        units_.push_back(measured ? pixel(view, u, v) : std::uint16_t{0});
-      });
-      image.encoding = "16UC1";
-      image.step = image.width * static_cast<std::uint32_t>(sizeof(std::uint16_t));
-      image.data = std::as_bytes(std::span(units_));
-    } else {
-      metres_.clear();
-      each_pixel(view, [&](int u, int v) {
-        metres_.push_back(measured_depth_m(view, rule, u, v).value_or(std::numeric_limits<float>::quiet_NaN()));
-      });
-      image.encoding = "32FC1";
-      image.step = image.width * static_cast<std::uint32_t>(sizeof(float));
-      image.data = std::as_bytes(std::span(metres_));
-    }
-    return image;
-  }
-
- private:
-  template <class Action>
-  static void each_pixel(const DepthView& view, const Action& action) {
-    for (int v = 0; v < view.height_px; ++v) {
-      for (int u = 0; u < view.width_px; ++u) {
-        action(u, v);
-      }
-    }
-  }
-  static std::uint16_t pixel(const DepthView& view, int u, int v) {
-    const auto* row = static_cast<const std::byte*>(view.data) + v * view.stride_bytes;
-    return reinterpret_cast<const std::uint16_t*>(row)[u];
-  }
-
-  std::vector<std::uint16_t> units_;
-  std::vector<float> metres_;
-};
-
 }  // namespace
 
 void save_mcap(Recording& recording, const std::filesystem::path& file, const McapWriterOptions& options) {
@@ -119,7 +68,7 @@ void save_mcap(Recording& recording, const std::filesystem::path& file, const Mc
     writer.write(channel, time_ns, time_ns, bytes);
   };
   write(tf, first, places);
-  ImageMessage image;
+  messages::DepthPixels pixels;
   for (int index = 0; index < recording.frame_count(); ++index) {
     for (std::size_t k = 0; k < cameras.size(); ++k) {
       if (!recording.has_image(index, k)) {
@@ -131,7 +80,9 @@ void save_mcap(Recording& recording, const std::filesystem::path& file, const Mc
       const messages::CameraModel model{.intrinsics = recording.recorded_intrinsics(k),
                                         .distortion = recording.recorded_distortion(k)};
       write(topics[k].info, time, messages::camera_info(model, header));
-      write(topics[k].image, time, image.make(view, cameras[k], header));
+      messages::Image image = messages::image_of(view, cameras[k].rule, pixels);
+      image.header = header;
+      write(topics[k].image, time, image);
     }
   }
   writer.close();

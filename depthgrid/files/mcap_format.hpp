@@ -27,6 +27,8 @@ enum class McapOpcode : std::uint8_t {
   message_index = 7,
   chunk_index = 8,
   statistics = 11,
+  metadata = 12,
+  metadata_index = 13,
   summary_offset = 14,
   data_end = 15,
 };

@@ -20,6 +20,8 @@ namespace {
 constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 26U;
 /// Chunks kept decompressed: images of one instant lie in neighbouring ones.
 constexpr std::size_t kChunksKept = 3;
+constexpr std::uint64_t kLargestMetadata = std::uint64_t{1} << 21U;
+constexpr std::size_t kMostMetadata = 100;
 
 struct Schema {
   std::string name;
@@ -52,6 +54,8 @@ struct Head {
 
 class McapReader::File {
  public:
+  using Metadata = std::map<std::string, std::map<std::string, std::string>>;
+
   explicit File(const std::filesystem::path& file) : name_(file.string()), stream_(open_regular_file(file)) {
     if (::fseeko(stream_.get(), 0, SEEK_END) != 0) {
       fail(name_, ": cannot be read: its size is not known");
@@ -114,6 +118,7 @@ class McapReader::File {
   [[nodiscard]] std::span<const McapChannel> channels() const noexcept { return channels_; }
   [[nodiscard]] const std::string& profile() const noexcept { return profile_; }
   [[nodiscard]] const std::string& damage() const noexcept { return damage_; }
+  [[nodiscard]] const Metadata& metadata() const noexcept { return metadata_; }
 
  private:
   void note(const std::string& words) { damage_ += (damage_.empty() ? "" : "; ") + words; }
@@ -219,6 +224,17 @@ class McapReader::File {
     profile_ = in.text("profile");
   }
 
+  /// The record whose head is known. Throws Error where it is broken.
+  void add_metadata(std::uint64_t at, const Head& head) {
+    if (head.length > kLargestMetadata || metadata_.size() >= kMostMetadata) {
+      return;
+    }
+    read_at(at + kMcapRecordHead, checked_length(at, head), record_);
+    McapContents in(record_, name_);
+    std::string name(in.text("name"));
+    metadata_.try_emplace(std::move(name), in.texts("metadata"));
+  }
+
   // By the summary.
 
   /// False where there is none that can be used; then nothing is known yet.
@@ -235,6 +251,7 @@ class McapReader::File {
     schemas_.clear();
     chunks_.clear();
     counts_.clear();
+    metadata_.clear();
     has_counts_ = false;
     profile_.clear();
     return false;
@@ -295,6 +312,9 @@ class McapReader::File {
         case McapOpcode::statistics:
           add_statistics(record.contents);
           break;
+        case McapOpcode::metadata_index:
+          add_metadata_at(record.contents);
+          break;
         default:
           break;
       }
@@ -335,6 +355,16 @@ class McapReader::File {
     chunks_.push_back(std::move(place));
   }
 
+  void add_metadata_at(std::span<const std::byte> contents) {
+    McapContents in(contents, "a metadata index");
+    const auto at = in.number<std::uint64_t>("offset");
+    const Head head = head_at(at);
+    if (head.opcode != static_cast<std::uint8_t>(McapOpcode::metadata)) {
+      fail("there are no metadata at byte ", at);
+    }
+    add_metadata(at, head);
+  }
+
   void add_statistics(std::span<const std::byte> contents) {
     McapContents in(contents, "the statistics");
     static_cast<void>(in.bytes(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8, "counts"));
@@ -349,6 +379,7 @@ class McapReader::File {
 
   /// All records up to the end, or to where the file is cut.
   void scan() {
+    metadata_.clear();
     chunks_.clear();
     loose_.clear();
     std::uint64_t at = kMcapMagic.size();
@@ -396,6 +427,9 @@ class McapReader::File {
         chunks_.push_back({.position = at, .index_of = {}});
         return true;
       }
+      case McapOpcode::metadata:
+        add_metadata(at, head);
+        return true;
       case McapOpcode::data_end:
       case McapOpcode::footer:
         return false;
@@ -539,6 +573,7 @@ class McapReader::File {
   std::string name_;
   std::string profile_;
   std::string damage_;
+  Metadata metadata_;
   std::vector<McapChannel> channels_;
   InputStream stream_;
   std::uint64_t size_ = 0;
@@ -573,6 +608,9 @@ const McapChannel* McapReader::channel(std::string_view topic) const noexcept {
 }
 
 const std::string& McapReader::profile() const noexcept { return file_->profile(); }
+const std::map<std::string, std::map<std::string, std::string>>& McapReader::metadata() const noexcept {
+  return file_->metadata();
+}
 const std::string& McapReader::damage() const noexcept { return file_->damage(); }
 std::vector<McapEntry> McapReader::entries(std::span<const std::uint16_t> channels) { return file_->entries(channels); }
 McapMessage McapReader::read(const McapEntry& entry) { return file_->read(entry); }

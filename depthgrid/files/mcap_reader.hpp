@@ -65,6 +65,9 @@ class McapReader {
   [[nodiscard]] const McapChannel* channel(std::string_view topic) const noexcept;
   /// What the file calls itself: "ros2".
   [[nodiscard]] const std::string& profile() const noexcept;
+  /// Texts that stand apart from messages, by the names of their records; of records of one name the first. Those of
+  /// more than 2 MiB are passed over.
+  [[nodiscard]] const std::map<std::string, std::map<std::string, std::string>>& metadata() const noexcept;
   /// In words what is missing at the end or why the summary is not used; empty: nothing.
   [[nodiscard]] const std::string& damage() const noexcept;
 

@@ -54,7 +54,10 @@ class McapWriter::File {
     if (options.chunk_bytes < 1 || options.chunk_bytes > kLargestChunkBytes) {
       fail(path_.string(), ": chunk_bytes is ", options.chunk_bytes, ", must be from 1 to ", kLargestChunkBytes);
     }
-    stream_.reset(std::fopen(replaceable_file(path_).c_str(), "wbe"));
+    stream_.reset(std::fopen(replaceable_file(path_).c_str(), options.only_new ? "wbxe" : "wbe"));
+    if (stream_ == nullptr && errno == EEXIST) {
+      fail(path_.string(), ": is there already, and is not written over: choose another name");
+    }
     if (stream_ == nullptr) {
       refuse();
     }
@@ -131,6 +134,18 @@ class McapWriter::File {
     if (chunk_.size() >= options_.chunk_bytes) {
       end_chunk();
     }
+  }
+
+  void add_metadata(std::string_view name, const std::map<std::string, std::string>& texts) {
+    require_open();
+    const std::uint64_t start = position_;
+    McapBuilder record;
+    record.text(name).texts(texts);
+    record.end_record(McapOpcode::metadata, records_);
+    record.number(start).number(std::uint64_t{records_.size()}).text(name);
+    record.end_record(McapOpcode::metadata_index, metadata_index_records_);
+    ++metadata_;
+    put_records();
   }
 
   void flush() {
@@ -222,7 +237,7 @@ class McapWriter::File {
   void put_summary() {
     McapBuilder record;
     record.number(times_.count).number(static_cast<std::uint16_t>(schemas_.size()));
-    record.number(static_cast<std::uint32_t>(topics_.size())).number(std::uint32_t{0}).number(std::uint32_t{0});
+    record.number(static_cast<std::uint32_t>(topics_.size())).number(std::uint32_t{0}).number(metadata_);
     record.number(chunks_).number(times_.first_ns).number(times_.last_ns);
     record.number(static_cast<std::uint32_t>(counts_.size() * 10));
     for (std::size_t k = 0; k < counts_.size(); ++k) {
@@ -232,11 +247,12 @@ class McapWriter::File {
     record.end_record(McapOpcode::statistics, statistics);
     const std::uint64_t summary_start = position_;
     std::vector<std::byte> offsets;
-    const std::array<std::pair<McapOpcode, const std::vector<std::byte>*>, 4> groups{
+    const std::array<std::pair<McapOpcode, const std::vector<std::byte>*>, 5> groups{
         {{McapOpcode::schema, &schema_records_},
          {McapOpcode::channel, &channel_records_},
          {McapOpcode::statistics, &statistics},
-         {McapOpcode::chunk_index, &chunk_index_records_}}};
+         {McapOpcode::chunk_index, &chunk_index_records_},
+         {McapOpcode::metadata_index, &metadata_index_records_}}};
     for (const auto& [opcode, group] : groups) {
       if (!group->empty()) {
         record.number(static_cast<std::uint8_t>(opcode)).number(summary_start + std::uint64_t{records_.size()});
@@ -270,12 +286,14 @@ class McapWriter::File {
   std::vector<std::byte> schema_records_;         ///< for the summary, as the next two
   std::vector<std::byte> channel_records_;
   std::vector<std::byte> chunk_index_records_;
+  std::vector<std::byte> metadata_index_records_;
   std::vector<std::byte> chunk_;  ///< what was collected
   std::vector<std::byte> compressed_;
   std::vector<std::byte> records_;  ///< what is about to be written
   Times chunk_times_;
   Times times_;
   std::uint32_t chunks_ = 0;
+  std::uint32_t metadata_ = 0;
 };
 
 McapWriter::McapWriter(const std::filesystem::path& file, const McapWriterOptions& options)
@@ -289,6 +307,10 @@ std::uint16_t McapWriter::add_channel(std::string_view topic, const messages::Me
 void McapWriter::write(std::uint16_t channel, std::uint64_t log_time_ns, std::uint64_t publish_time_ns,
                        std::span<const std::byte> message) {
   file_->write(channel, log_time_ns, publish_time_ns, message);
+}
+
+void McapWriter::add_metadata(std::string_view name, const std::map<std::string, std::string>& texts) {
+  file_->add_metadata(name, texts);
 }
 
 void McapWriter::flush() { file_->flush(); }

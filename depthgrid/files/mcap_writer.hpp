@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "depthgrid/messages/message_type.hpp"
@@ -20,6 +22,8 @@ struct McapWriterOptions {
   McapCompression compression = McapCompression::zstd;
   /// Messages are collected up to this size and then written: what a program loses that dies. From 1 to 2^26.
   std::size_t chunk_bytes = std::size_t{1} << 22U;
+  /// What is there already is refused, not replaced.
+  bool only_new = false;
 };
 
 /// Messages are written in the order in which they come, with indexes and CRCs, profile "ros2". The file has its name
@@ -27,7 +31,7 @@ struct McapWriterOptions {
 /// thread-safe.
 class McapWriter {
  public:
-  /// Replaces the file. Throws Error that names it and the reason.
+  /// Replaces the file, unless options say otherwise. Throws Error that names it and the reason.
   explicit McapWriter(const std::filesystem::path& file, const McapWriterOptions& options = {});
   /// Without close() the file has no summary; then reading has to look at all of it.
   ~McapWriter();
@@ -43,6 +47,9 @@ class McapWriter {
   /// a channel that was not added, and when the disk is full.
   void write(std::uint16_t channel, std::uint64_t log_time_ns, std::uint64_t publish_time_ns,
              std::span<const std::byte> message);
+
+  /// Texts by names, apart from the messages, at this place of the file. Throws Error.
+  void add_metadata(std::string_view name, const std::map<std::string, std::string>& texts);
 
   /// What was collected goes to the file. Throws Error.
   void flush();

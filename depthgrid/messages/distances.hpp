@@ -38,6 +38,12 @@ struct Distances {
   std::vector<Distance> distances;
   std::vector<std::string> cameras;
   std::vector<double> image_ages;  ///< one a camera: seconds from its newest image to the stamp; NaN: there was none
+  // What the answer stands on: with it a recording is asked again. A time of 0: there was none, or it is not told.
+  std::vector<Time> image_stamps;        ///< one a camera: of its image
+  std::vector<Time> image_joint_stamps;  ///< one a camera: the newest joint state known when the robot was taken out
+  Time joint_stamp;                      ///< the newest joint state known
+  std::uint64_t sequence = 0;            ///< counts answers; gaps are answers that nobody sent
+  bool stop = true;
 };
 
 /// The same of an answer in the frame of the message. `camera` is the id of nearest.camera, empty where there is none.

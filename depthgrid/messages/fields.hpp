@@ -215,6 +215,11 @@ void fields(A& a, M& m) {
   a("distances", m.distances);
   a("cameras", m.cameras);
   a("image_ages", m.image_ages);
+  a("image_stamps", m.image_stamps);
+  a("image_joint_stamps", m.image_joint_stamps);
+  a("joint_stamp", m.joint_stamp);
+  a("sequence", m.sequence);
+  a("stop", m.stop);
 }
 
 }  // namespace depthgrid::messages

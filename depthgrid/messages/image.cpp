@@ -4,10 +4,12 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 
 #include "depthgrid/core/camera.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/core/usable_frame.hpp"
 
 namespace depthgrid::messages {
 namespace {
@@ -76,6 +78,56 @@ DepthView depth_view(const Image& image, DepthPixels& pixels, double metres_per_
   }
   copy_pixels(image, swap, pixels.metres);
   return depthgrid::depth_view(pixels.metres, width_px, height_px);
+}
+
+namespace {
+
+/// All pixels without padding; `raw` says whether the view's own bytes are taken.
+template <class Pixel, class Value>
+void fill_pixels(const DepthView& view, bool raw, const Value& value, std::vector<Pixel>& pixels) {
+  const std::ptrdiff_t stride = view.stride_bytes != 0 ? view.stride_bytes : row_bytes(view.format, view.width_px);
+  const auto width = static_cast<std::size_t>(view.width_px);
+  pixels.resize(width * static_cast<std::size_t>(view.height_px));
+  for (int v = 0; v < view.height_px; ++v) {
+    Pixel* const row = pixels.data() + static_cast<std::size_t>(v) * width;
+    if (raw) {
+      std::memcpy(row, static_cast<const std::byte*>(view.data) + v * stride, width * sizeof(Pixel));
+      continue;
+    }
+    for (int u = 0; u < view.width_px; ++u) {
+      row[u] = value(u, v);
+    }
+  }
+}
+
+}  // namespace
+
+Image image_of(const DepthView& view, const MeasurementRule& rule, DepthPixels& pixels) {
+  Image image;
+  image.width = static_cast<std::uint32_t>(view.width_px);
+  image.height = static_cast<std::uint32_t>(view.height_px);
+  MeasurementRule values;
+  values.invalid_units = rule.invalid_units;
+  const bool is_float = view.format == DepthFormat::float32_metres;
+  if (!is_float && view.metres_per_unit == kMetresPerUnit) {
+    const auto unit = [&](int u, int v) {
+      const auto* row = static_cast<const std::byte*>(view.data) + v * with_stride(view).stride_bytes;
+      return measured_depth_m(view, values, u, v) ? reinterpret_cast<const std::uint16_t*>(row)[u] : std::uint16_t{0};
+    };
+    fill_pixels(view, values.invalid_units.empty(), unit, pixels.units);
+    image.encoding = "16UC1";
+    image.step = image.width * static_cast<std::uint32_t>(sizeof(std::uint16_t));
+    image.data = std::as_bytes(std::span(pixels.units));
+    return image;
+  }
+  const auto metres = [&](int u, int v) {
+    return measured_depth_m(view, values, u, v).value_or(std::numeric_limits<float>::quiet_NaN());
+  };
+  fill_pixels(view, is_float, metres, pixels.metres);
+  image.encoding = "32FC1";
+  image.step = image.width * static_cast<std::uint32_t>(sizeof(float));
+  image.data = std::as_bytes(std::span(pixels.metres));
+  return image;
 }
 
 }  // namespace depthgrid::messages

@@ -41,4 +41,9 @@ struct DepthPixels {
 /// kLargestImageSide, rows that overlap, and fewer bytes than rows need.
 [[nodiscard]] DepthView depth_view(const Image& image, DepthPixels& pixels, double metres_per_unit = kMetresPerUnit);
 
+/// The way back: header and step are left to you. Images of 16 bits in millimetres are 16UC1, all others 32FC1 in
+/// metres, so that no reading changes; what the rule calls no measurement by its value, not by near and far, is 0 or
+/// NaN. Its data are in `pixels`. Throws nothing but std::bad_alloc, and not that where pixels had room before.
+[[nodiscard]] Image image_of(const DepthView& view, const MeasurementRule& rule, DepthPixels& pixels);
+
 }  // namespace depthgrid::messages

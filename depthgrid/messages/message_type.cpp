@@ -102,7 +102,14 @@ const Texts& definitions() {
                  "std_msgs/Header header  # the time that distance_now is of, and the frame of all coordinates\n"
                  "depthgrid_msgs/Distance[] distances\n"
                  "string[] cameras\n"
-                 "float64[] image_ages  # one a camera: seconds from its newest image to the stamp; NaN: none\n",
+                 "float64[] image_ages  # one a camera: seconds from its newest image to the stamp; NaN: none\n"
+                 "# What the answer stands on; a time of 0: none, or not told.\n"
+                 "builtin_interfaces/Time[] image_stamps        # one a camera: of its image\n"
+                 "builtin_interfaces/Time[] image_joint_stamps  # one a camera: the newest joint state known when the "
+                 "robot was taken out\n"
+                 "builtin_interfaces/Time joint_stamp           # the newest joint state known\n"
+                 "uint64 sequence\n"
+                 "bool stop\n",
                  {kHeader, kTime, kDistance, kPoint, kVector3})};
   return texts;
 }
@@ -125,7 +132,7 @@ constexpr std::array<std::array<std::string_view, 3>, 9> kNames{{
     {"diagnostic_msgs/msg/DiagnosticArray", "diagnostic_msgs::msg::dds_::DiagnosticArray_",
      "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"},
     {"depthgrid_msgs/msg/Distances", "depthgrid_msgs::msg::dds_::Distances_",
-     "RIHS01_c87cf4c62d4371a9047547ee6e366abd849b1d026a7f85d32ceeb0ac52e047ee"},
+     "RIHS01_3ca0acef299bcb15792d9e1461d85a2d0771fc64d6d088c3ef9da2e386128112"},
 }};
 
 using Types = std::array<MessageType, kNames.size()>;

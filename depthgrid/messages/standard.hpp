@@ -45,6 +45,9 @@ struct Color {
   return std::int64_t{time.sec} * 1'000'000'000 + time.nanosec;
 }
 
+/// The way back. Beyond what the message holds it is the nearest time that it does.
+[[nodiscard]] Time time_of_nanoseconds(std::int64_t time_ns) noexcept;
+
 /// The nearest nanosecond; seconds() gives back the same number, to a nanosecond where it is below 4 million. Throws
 /// Error for numbers that are not finite or beyond what the message holds (to 2038, from 1901).
 [[nodiscard]] Time time_of(double time_s);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "depthgrid/core/blind_layer.hpp"
-#include "depthgrid/robot/motion_padding.hpp"
 #include "depthgrid/sensors/clock.hpp"
 
 namespace depthgrid::monitor {
@@ -34,77 +33,29 @@ MotionLimit limit_of(const Answer& answer) noexcept {
 }  // namespace
 
 AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::SearchEvaluator& evaluator,
-                       const robot::JointHistory* history, const JointLine* joints,
-                       const std::vector<std::unique_ptr<CameraLine>>& cameras)
-    : robot_(setup.robot),
-      asked_(setup.parts),
+                       const robot::JointHistory* history, const std::vector<std::unique_ptr<CameraLine>>& cameras)
+    : places_(setup),
+      has_robot_(setup.robot.has_value()),
       max_image_age_s_(setup.options.max_image_age_s),
       evaluator_(evaluator),
       history_(history),
-      joints_(joints),
-      cameras_(cameras),
-      time_error_s_(setup.exposure.time_error_s) {
-  for (const cell::AskedPart& part : asked_) {
-    if (part.on_robot) {
-      links_.push_back(*part.on_robot);
-    }
-  }
-  if (robot_) {
-    for (const robot::Joint& joint : robot_->model.joints()) {
-      speeds_.push_back(joint.max_speed);
-    }
-    q_.resize(speeds_.size());
-    window_.resize(speeds_.size());
-    moved_.resize(speeds_.size());
-    accelerations_ = setup.exposure.joint_accelerations;
-    accelerations_.resize(speeds_.size(), std::numeric_limits<double>::infinity());
-    T_world_link_.assign(robot_->model.links().size(), Pose::Identity());
-  }
-  links_world_.resize(links_.size());
-  motion_m_.resize(links_.size());
-  answer_.parts.resize(asked_.size());
-  answer_.parts_world.resize(asked_.size());
+      cameras_(cameras) {
+  answer_.parts.resize(setup.parts.size());
+  answer_.parts_world.resize(setup.parts.size());
   answer_.camera_count = cameras_.size();
   answer_.reason.stop_m = stop_m;
   answer_.reason.v_max_m_s = setup.settings.v_max_m_s;
 }
 
 bool AskingLine::place_parts(double now_s) noexcept {
+  robot::JointMoment known;
   answer_.joints_age_s = 0;
-  bool placed = true;
-  if (robot_ && history_ != nullptr) {
-    answer_.joints_age_s = now_s - joints_->newest_s();
-    const robot::JointsAtTime joints = history_->at(now_s, q_);
-    placed = joints.known() && robot_->link_poses(q_, T_world_link_);
-    if (placed) {
-      robot::place(links_, T_world_link_, links_world_);
-      bound_motion(now_s, joints.time_error_s);
-      robot::motion_padding(robot_->model, links_, T_world_link_, moved_, 1.0, motion_m_);
-    }
+  if (has_robot_ && history_ != nullptr) {
+    known = history_->now();
+    answer_.joints_s = known.samples > 0 ? known.newest_s : Proximity::kNaN;
+    answer_.joints_age_s = now_s - answer_.joints_s;
   }
-  std::size_t link = 0;
-  for (std::size_t i = 0; i < asked_.size(); ++i) {
-    if (!asked_[i].on_robot) {
-      answer_.parts_world[i] = asked_[i].at_world;
-      continue;
-    }
-    answer_.parts_world[i] = links_world_[link];
-    // Not finite: the evaluator answers not_evaluated.
-    answer_.parts_world[i].radius_m += placed ? motion_m_[link] : Proximity::kNaN;
-    ++link;
-  }
-  return placed;
-}
-
-// Since their newest state the joints may have gone anywhere at their greatest speeds, and that state's own time may be
-// off by what the cell declares; as RobotAtExposure has it for images.
-void AskingLine::bound_motion(double now_s, double hold_s) noexcept {
-  const bool measured = history_->greatest_motion(now_s, time_error_s_, q_, speeds_, accelerations_, window_);
-  for (std::size_t j = 0; j < moved_.size(); ++j) {
-    const double at_most = speeds_[j] * (time_error_s_ + hold_s);
-    const double by_samples = std::isfinite(accelerations_[j]) ? window_[j] : std::min(at_most, window_[j]);
-    moved_[j] = measured ? by_samples : at_most;
-  }
+  return places_.find(now_s, history_, known, answer_.parts_world);
 }
 
 void AskingLine::look_at_cameras() noexcept {
@@ -117,6 +68,7 @@ void AskingLine::look_at_cameras() noexcept {
     CameraBasis& basis = answer_.cameras[k];
     basis.state = cameras_[k]->state();
     basis.without_reading = cameras_[k]->without_reading();
+    basis.image_s = image_s;
     basis.age_s = answer_.time_s - image_s;
     basis.late = !(basis.age_s <= max_image_age_s_);
     if (!basis.late) {

@@ -13,7 +13,7 @@
 #include "depthgrid/monitor/camera_line.hpp"
 #include "depthgrid/monitor/cell_answer.hpp"
 #include "depthgrid/monitor/event.hpp"
-#include "depthgrid/monitor/joint_line.hpp"
+#include "depthgrid/monitor/part_places.hpp"
 #include "depthgrid/monitor/time_histogram.hpp"
 #include "depthgrid/robot/joint_history.hpp"
 #include "depthgrid/search/search_evaluator.hpp"
@@ -32,10 +32,9 @@ struct AskingHistograms {
 /// - ask() locks, allocates and throws nothing.
 class AskingLine {
  public:
-  /// All that is handed over outlives it; history and joints are null without a robot.
+  /// All that is handed over outlives it; the history is null without a robot.
   AskingLine(const cell::CellSetup& setup, double stop_m, search::SearchEvaluator& evaluator,
-             const robot::JointHistory* history, const JointLine* joints,
-             const std::vector<std::unique_ptr<CameraLine>>& cameras);
+             const robot::JointHistory* history, const std::vector<std::unique_ptr<CameraLine>>& cameras);
 
   /// At time now_s, which goes on from call to call.
   const CellAnswer& ask(double now_s) noexcept;
@@ -56,29 +55,16 @@ class AskingLine {
  private:
   /// False: nobody knows where the robot is.
   [[nodiscard]] bool place_parts(double now_s) noexcept;
-  /// How far each joint may be from q_ at now_s, into moved_.
-  void bound_motion(double now_s, double hold_s) noexcept;
   void look_at_cameras() noexcept;
   void find_reason(bool placed) noexcept;
   void note(bool was_stopped) noexcept;
 
-  std::optional<robot::PlacedRobot> robot_;
-  std::vector<cell::AskedPart> asked_;
-  std::vector<robot::LinkCapsule> links_;  ///< of the parts on the robot, in their order
+  PartPlaces places_;
+  bool has_robot_;
   double max_image_age_s_;
   search::SearchEvaluator& evaluator_;
   const robot::JointHistory* history_;
-  const JointLine* joints_;
   const std::vector<std::unique_ptr<CameraLine>>& cameras_;
-  std::vector<double> q_;
-  double time_error_s_;  ///< between the joints' clock and ours
-  std::vector<double> speeds_;
-  std::vector<double> accelerations_;  ///< infinite where not declared
-  std::vector<double> window_;         ///< how far each joint may be, by the samples
-  std::vector<double> moved_;          ///< and by all that is known
-  std::vector<Pose> T_world_link_;
-  std::vector<Capsule> links_world_;
-  std::vector<double> motion_m_;
   CellAnswer answer_;
   bool has_asked_ = false;
   EventQueue events_;

@@ -145,7 +145,9 @@ bool CameraLine::is_refused(const sensors::DepthReading& reading, bool is_empty)
   return true;
 }
 
-void CameraLine::take(const sensors::DepthReading& reading) noexcept {
+void CameraLine::take(const sensors::DepthReading& given) noexcept {
+  sensors::DepthReading reading = given;
+  reading.time_s = sensors::seconds_of(sensors::nanoseconds_of(given.time_s));  // as a recording holds it
   count(counters_.skipped, reading.skipped);
   // What cannot be an image is told by the evaluator, which then takes the camera for blind; its pixels are not read.
   const bool readable = why_unusable(reading.depth, camera_.intrinsics) == nullptr;
@@ -154,10 +156,16 @@ void CameraLine::take(const sensors::DepthReading& reading) noexcept {
     return;
   }
   const double begin_s = sensors::clock_now_s();
-  const Pose& T_world_camera = reading.T_world_camera ? *reading.T_world_camera : camera_.T_world_camera;
+  const Pose T_world_camera = reading.T_world_camera ? recordable(*reading.T_world_camera) : camera_.T_world_camera;
+  robot::JointMoment known;
   Frame frame{reading.depth, {}, reading.time_s};
   if (intake_ != nullptr && readable) {
     frame = intake_->frame(settings_.camera, frame, T_world_camera);
+    known = intake_->report()[settings_.camera].known;
+  }
+  if (recorder_ != nullptr && readable) {  // before anybody can ask it
+    recorder_->image(settings_.camera, reading.depth, reading.time_s, reading.T_world_camera,
+                     known.samples > 0 ? known.newest_s : Proximity::kNaN);
   }
   const FrameUpdate update = evaluator_.update(settings_.camera, frame, T_world_camera);
   preparation_.add(sensors::clock_now_s() - begin_s);

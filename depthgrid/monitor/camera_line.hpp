@@ -13,6 +13,7 @@
 #include "depthgrid/monitor/cell_answer.hpp"
 #include "depthgrid/monitor/event.hpp"
 #include "depthgrid/monitor/image_check.hpp"
+#include "depthgrid/monitor/recorder.hpp"
 #include "depthgrid/monitor/source_counts.hpp"
 #include "depthgrid/monitor/time_histogram.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
@@ -45,6 +46,8 @@ class CameraLine {
   CameraLine(std::unique_ptr<sensors::DepthSource> source, const RigCamera& camera, const CameraLineSettings& settings,
              search::SearchEvaluator& evaluator, robot::FrameIntake* intake);
 
+  /// Images that are used go there, too. Before run().
+  void record(Recorder& recorder) noexcept { recorder_ = &recorder; }
   /// Until it is told to stop.
   void run(const std::stop_token& stop) noexcept;
 
@@ -59,7 +62,7 @@ class CameraLine {
   template <class Source, class Reading, class Line>
   friend void follow(Source& source, Reading reading, Line& line, const std::stop_token& stop) noexcept;
   [[nodiscard]] bool open() noexcept;
-  void take(const sensors::DepthReading& reading) noexcept;
+  void take(const sensors::DepthReading& given) noexcept;
   void has_ended() noexcept;
   void has_failed() noexcept;
   [[nodiscard]] bool is_refused(const sensors::DepthReading& reading, bool is_empty) noexcept;
@@ -73,6 +76,7 @@ class CameraLine {
   CameraLineSettings settings_;
   search::SearchEvaluator& evaluator_;
   robot::FrameIntake* intake_;
+  Recorder* recorder_ = nullptr;
   ImageCheck check_;
   DepthImage measured_m_;
   EventQueue events_;

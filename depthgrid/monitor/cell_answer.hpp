@@ -35,6 +35,7 @@ enum class CameraState : std::uint8_t {
 /// What an answer stands on of one camera. Seconds.
 struct CameraBasis {
   CameraState state = CameraState::opening;
+  double image_s = Proximity::kNaN;          ///< when its image was exposed; NaN: there is none
   double age_s = Proximity::kNaN;            ///< of its image; NaN: there is none
   double without_reading = Proximity::kNaN;  ///< share of that image's pixels
   bool late = true;                          ///< it frees nothing: no image, or too old a one
@@ -69,7 +70,8 @@ struct CellAnswer {
   double clear_m = Proximity::kNaN;     ///< the least distance less blind layer; NaN likewise
   double blind_m = Proximity::kNaN;     ///< the thickest layer
   double skew_s = Proximity::kNaN;      ///< between the oldest and the newest image that count
-  double joints_age_s = 0;              ///< of the newest joint state; 0 without a robot
+  double joints_s = Proximity::kNaN;    ///< of the newest joint state; NaN: there is none
+  double joints_age_s = 0;              ///< its age; 0 without a robot
   std::size_t camera_count = 0;
   std::array<CameraBasis, views::kMaxCameras> cameras{};
   Reason reason;

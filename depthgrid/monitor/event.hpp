@@ -13,12 +13,13 @@
 namespace depthgrid::monitor {
 
 enum class EventKind : std::uint8_t {
-  source_open,    ///< a camera, or the joints, was opened; the text says what it is
-  source_failed,  ///< it could not be opened, or was lost; the text says why
-  source_ended,   ///< a recording is at its end
-  camera_state,   ///< a camera's images are refused, or taken again; the text says why
-  stop,           ///< from now on answers say stop: `reason`
-  go,             ///< and from now on they do not
+  source_open,       ///< a camera, or the joints, was opened; the text says what it is
+  source_failed,     ///< it could not be opened, or was lost; the text says why
+  source_ended,      ///< a recording is at its end
+  camera_state,      ///< a camera's images are refused, or taken again; the text says why
+  stop,              ///< from now on answers say stop: `reason`
+  go,                ///< and from now on they do not
+  recording_failed,  ///< nothing more is recorded; the text says why
 };
 
 struct Event {
@@ -44,6 +45,9 @@ struct Event {
 class EventQueue {
  public:
   void push(const Event& event) noexcept {
+    if (also_ != nullptr) {
+      also_->push(event);
+    }
     const std::size_t end = end_.load(std::memory_order_relaxed);
     if (end - begin_.load(std::memory_order_acquire) == kRoom) {
       dropped_.fetch_add(1, std::memory_order_relaxed);
@@ -61,10 +65,13 @@ class EventQueue {
     begin_.store(begin + 1, std::memory_order_release);
     return true;
   }
+  /// What is pushed from now on goes into `other`, too, which outlives it. Before there are threads.
+  void also(EventQueue& other) noexcept { also_ = &other; }
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr std::size_t kRoom = 64;
+  EventQueue* also_ = nullptr;
   std::array<Event, kRoom> events_{};
   std::atomic<std::size_t> begin_{0};
   std::atomic<std::size_t> end_{0};

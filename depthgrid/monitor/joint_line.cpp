@@ -31,11 +31,16 @@ bool JointLine::open() noexcept {
 
 void JointLine::take(const sensors::JointReading& reading) noexcept {
   const double now_s = sensors::clock_now_s();
+  const double time_s = sensors::seconds_of(sensors::nanoseconds_of(reading.time_s));  // as a recording holds it
   const bool of_now = reading.time_s <= now_s + kFuture_s && reading.time_s >= now_s - max_age_s_;
   // A state that is doubled or out of order adds nothing, and says nothing of the robot.
-  const bool added = of_now && history_.add(reading.time_s, reading.q);
+  const bool added = of_now && history_.can_add(time_s, reading.q);
   if (added) {
-    newest_s_.store(reading.time_s, std::memory_order_relaxed);
+    if (recorder_ != nullptr) {  // before anybody can stand on it
+      recorder_->joints(time_s, reading.q);
+    }
+    (void)history_.add(time_s, reading.q);
+    newest_s_.store(time_s, std::memory_order_relaxed);
   }
   (added ? counters_.taken : counters_.refused).fetch_add(1, std::memory_order_relaxed);
   if (!of_now && !refusing_) {

@@ -19,6 +19,8 @@ class JointLine {
   JointLine(std::unique_ptr<sensors::JointSource> source, robot::JointHistory& history, double max_age_s)
       : source_(std::move(source)), history_(history), max_age_s_(max_age_s) {}
 
+  /// States that are used go there, too. Before run().
+  void record(Recorder& recorder) noexcept { recorder_ = &recorder; }
   void run(const std::stop_token& stop) noexcept;
 
   // For any thread.
@@ -39,6 +41,7 @@ class JointLine {
   std::unique_ptr<sensors::JointSource> source_;
   robot::JointHistory& history_;
   double max_age_s_;
+  Recorder* recorder_ = nullptr;
   bool refusing_ = false;
   bool has_ended_ = false;
   EventQueue events_;

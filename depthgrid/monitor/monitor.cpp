@@ -82,8 +82,7 @@ struct Monitor::State {
       cameras.push_back(std::make_unique<CameraLine>(std::move(sources.cameras[k]), setup.rig.cameras[k], line,
                                                      evaluator, intake ? &*intake : nullptr));
     }
-    asking.emplace(setup, settings.stop_m, evaluator, history ? &*history : nullptr, joints ? &*joints : nullptr,
-                   cameras);
+    asking.emplace(setup, settings.stop_m, evaluator, history ? &*history : nullptr, cameras);
     newest.emplace(asking->answer());
   }
 
@@ -102,24 +101,31 @@ struct Monitor::State {
   std::atomic<std::uint64_t> late_questions{0};
   double begin_s = 0;
   std::atomic<double> end_s{Proximity::kNaN};
+  std::unique_ptr<Recorder> recorder;  ///< null: nothing is recorded
   std::vector<std::jthread> threads;
+  std::jthread recording;
 };
 
 void Monitor::State::ask(const std::stop_token& stop) noexcept {
   const double period_s = 1 / settings.rate_hz;
   double next_s = sensors::clock_now_s();
   while (!stop.stop_requested()) {
-    const CellAnswer& answer = asking->ask(sensors::clock_now_s());
+    // In whole nanoseconds, as a recording holds it.
+    const double now_s = sensors::seconds_of(sensors::nanoseconds_of(sensors::clock_now_s()));
+    const CellAnswer& answer = asking->ask(now_s);
+    if (recorder != nullptr) {
+      recorder->answer(answer);
+    }
     newest->back() = answer;
     newest->publish();
     for (const std::unique_ptr<OutputLine>& output : outputs) {
       output->put(answer);
     }
     next_s += period_s;
-    const double now_s = sensors::clock_now_s();
-    if (now_s > next_s + period_s) {  // what was missed is not made up for
+    const double done_s = sensors::clock_now_s();
+    if (done_s > next_s + period_s) {  // what was missed is not made up for
       late_questions.fetch_add(1, std::memory_order_relaxed);
-      next_s = now_s;
+      next_s = done_s;
     }
     // Not longer at once than somebody who stops it waits.
     while (!stop.stop_requested() && !sensors::wait_until(next_s, 0.05)) {
@@ -139,12 +145,32 @@ void Monitor::add(std::unique_ptr<Output> output) {
   state_->outputs.push_back(std::make_unique<OutputLine>(std::move(output), state_->asking->answer()));
 }
 
+void Monitor::record(std::unique_ptr<Recorder> recorder) {
+  State& state = *state_;
+  if (!state.threads.empty() || state.recorder != nullptr) {
+    fail("monitor: a recorder is added ", state.recorder != nullptr ? "for the second time" : "after the start");
+  }
+  state.recorder = std::move(recorder);
+  for (const std::unique_ptr<CameraLine>& camera : state.cameras) {
+    camera->record(*state.recorder);
+    camera->events().also(state.recorder->events());
+  }
+  if (state.joints) {
+    state.joints->record(*state.recorder);
+    state.joints->events().also(state.recorder->events());
+  }
+  state.asking->events().also(state.recorder->events());
+}
+
 void Monitor::start() {
   State& state = *state_;
   if (!state.threads.empty()) {
     fail("monitor: is started for the second time");
   }
   state.begin_s = sensors::clock_now_s();
+  if (state.recorder != nullptr) {
+    state.recording = std::jthread([&state](const std::stop_token& stop) { state.recorder->run(stop); });
+  }
   for (const std::unique_ptr<OutputLine>& output : state.outputs) {
     state.threads.emplace_back([&line = *output](const std::stop_token& stop) { line.run(stop); });
   }
@@ -165,6 +191,11 @@ void Monitor::stop() noexcept {
     if (thread.joinable()) {
       thread.join();
     }
+  }
+  // Last of all, so that everything they said is in it.
+  if (state_->recording.joinable()) {
+    state_->recording.request_stop();
+    state_->recording.join();
   }
   if (!state_->threads.empty() && std::isnan(state_->end_s.load())) {
     state_->end_s = sensors::clock_now_s();
@@ -194,6 +225,9 @@ std::vector<Event> Monitor::events() {
     drain(state_->joints->events());
   }
   drain(state_->asking->events());
+  if (state_->recorder != nullptr) {
+    drain(state_->recorder->told());
+  }
   std::stable_sort(result.begin(), result.end(), [](const Event& a, const Event& b) { return a.time_s < b.time_s; });
   return result;
 }
@@ -221,6 +255,9 @@ MonitorReport Monitor::report() const {
   if (state.joints) {
     report.joints = state.joints->counts();
     report.events_dropped += state_->joints->events().dropped();
+  }
+  if (state.recorder != nullptr) {
+    report.recorded = state.recorder->counts();
   }
   for (const std::unique_ptr<OutputLine>& output : state.outputs) {
     report.passed_over.push_back(output->passed_over());
@@ -250,6 +287,9 @@ std::string event_line(const Event& event, const Names& names) {
     std::array<char, 640> buffer{};
     return std::string(event.kind == EventKind::stop ? "stop: " : "go: ") +
            std::string(sentence(event.reason, names, buffer));
+  }
+  if (event.kind == EventKind::recording_failed) {
+    return "recording: " + std::string(event.words());
   }
   const std::string who = event.camera < names.cameras.size() ? names.cameras[event.camera] : "joints";
   const std::string what = event.kind == EventKind::source_open    ? "open: "

@@ -16,6 +16,7 @@
 #include "depthgrid/cell/cell_setup.hpp"
 #include "depthgrid/monitor/cell_answer.hpp"
 #include "depthgrid/monitor/event.hpp"
+#include "depthgrid/monitor/recorder.hpp"
 #include "depthgrid/monitor/source_counts.hpp"
 #include "depthgrid/monitor/time_histogram.hpp"
 #include "depthgrid/sensors/source.hpp"
@@ -63,6 +64,7 @@ struct MonitorReport {
   SourceCounts joints;
   std::vector<std::uint64_t> passed_over;  ///< answers that an output did not get, one an output
   std::uint64_t events_dropped = 0;
+  std::optional<RecorderCounts> recorded{};
 };
 
 class Monitor {
@@ -75,6 +77,8 @@ class Monitor {
 
   /// Before start().
   void add(std::unique_ptr<Output> output);
+  /// Before start(): everything that is used, answered and said is recorded. `recorder`: of this cell's rig and names.
+  void record(std::unique_ptr<Recorder> recorder);
 
   /// Once. Throws std::system_error where there are no threads.
   void start();

@@ -1,7 +1,11 @@
 #include "depthgrid/monitor/open_cell.hpp"
 
 #include <algorithm>
+#include <array>
+#include <ctime>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/whole_file.hpp"
@@ -189,16 +193,51 @@ class UdpOutput final : public Output {
   network::UdpSender sender_;
 };
 
+/// The text of the robot's file; empty for one that is built in, and without a robot.
+std::string robot_description(const cell::Cell& cell) {
+  constexpr std::uint64_t kLargestUrdf = std::uint64_t{16} << 20U;
+  return cell.robot && !cell.robot->is_built_in ? read_whole_file(cell.robot->urdf, kLargestUrdf) : std::string();
+}
+
+std::filesystem::path with_time(const std::filesystem::path& file) {
+  constexpr std::string_view kPlace = "{time}";
+  std::string name = file.string();
+  const std::size_t at = name.find(kPlace);
+  if (at != std::string::npos) {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    std::array<char, 32> text{};
+    (void)::gmtime_r(&now, &utc);
+    name.replace(at, kPlace.size(), text.data(), std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &utc));
+  }
+  return name;
+}
+
 }  // namespace
 
 std::unique_ptr<Output> ros2_output(const cell::Cell& cell, const cell::CellSetup& setup, const Names& names,
                                     std::shared_ptr<dds::Node> ros2) {
-  constexpr std::uint64_t kLargestUrdf = std::uint64_t{16} << 20U;
-  Ros2OutputSettings settings{.names = names, .rig = setup.rig, .frame = cell.ros2.frame, .robot_description = {}};
-  if (cell.robot && !cell.robot->is_built_in) {
-    settings.robot_description = read_whole_file(cell.robot->urdf, kLargestUrdf);
-  }
+  const Ros2OutputSettings settings{
+      .names = names, .rig = setup.rig, .frame = cell.ros2.frame, .robot_description = robot_description(cell)};
   return ros2_output(std::move(ros2), settings);
+}
+
+std::unique_ptr<Recorder> recorder(const cell::Cell& cell, const cell::CellSetup& setup, const Names& names) {
+  RecorderSettings settings;
+  settings.file = with_time(cell.outputs.record);
+  settings.names = names;
+  settings.rig = setup.rig;
+  if (setup.robot) {
+    for (const robot::Joint& joint : setup.robot->model.joints()) {
+      settings.joints.push_back(joint.name);
+    }
+  }
+  settings.frame = cell.ros2.frame;
+  settings.robot_description = robot_description(cell);
+  std::error_code ignored;
+  settings.cell_file = std::filesystem::absolute(cell.file, ignored);
+  settings.cell_text = cell.text;
+  return std::make_unique<Recorder>(settings);
 }
 
 std::unique_ptr<Output> udp_output(const cell::UdpEntry& to) { return std::make_unique<UdpOutput>(to); }

@@ -29,6 +29,11 @@ namespace depthgrid::monitor {
 [[nodiscard]] std::unique_ptr<Output> ros2_output(const cell::Cell& cell, const cell::CellSetup& setup,
                                                   const Names& names, std::shared_ptr<dds::Node> ros2);
 
+/// Makes the file of cell.outputs.record; `{time}` in its name becomes the time of day in UTC, 20261130T212306Z. Throws
+/// Error as Recorder does, and where the robot's file cannot be read.
+[[nodiscard]] std::unique_ptr<Recorder> recorder(const cell::Cell& cell, const cell::CellSetup& setup,
+                                                 const Names& names);
+
 /// A datagram an answer. Throws Error.
 [[nodiscard]] std::unique_ptr<Output> udp_output(const cell::UdpEntry& to);
 

@@ -104,6 +104,16 @@ messages::Distances distances_message(const CellAnswer& answer, const Names& nam
   return message;
 }
 
+void tell_basis(const CellAnswer& answer, const std::function<messages::Time(double)>& stamp,
+                messages::Distances& message) {
+  for (std::size_t k = 0; k < message.cameras.size(); ++k) {
+    message.image_stamps.push_back(k < answer.camera_count ? stamp(answer.cameras[k].image_s) : messages::Time{});
+  }
+  message.joint_stamp = stamp(answer.joints_s);
+  message.sequence = answer.sequence;
+  message.stop = answer.stop;
+}
+
 messages::Markers markers_message(const CellAnswer& answer, const Names& names, const messages::Header& header) {
   messages::Markers message;
   messages::Marker lines = marker(header, "nearest", 0, messages::Marker::line_list);

@@ -1,6 +1,7 @@
 // What a running cell says, as messages of ROS 2. Internal.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "depthgrid/core/rig.hpp"
@@ -15,6 +16,10 @@ namespace depthgrid::monitor {
 /// With the answer's own header: the time it is for.
 [[nodiscard]] messages::Distances distances_message(const CellAnswer& answer, const Names& names,
                                                     const messages::Header& header);
+
+/// What the answer stands on, but for the joint states of its images. `stamp` makes stamps of times; 0 of NaN.
+void tell_basis(const CellAnswer& answer, const std::function<messages::Time(double)>& stamp,
+                messages::Distances& message);
 
 /// The parts as capsules, a line from each part's axis to its nearest point, and one sentence.
 [[nodiscard]] messages::Markers markers_message(const CellAnswer& answer, const Names& names,

@@ -50,7 +50,9 @@ class Ros2Output final : public Output {
 
   void take(const CellAnswer& answer) override {
     const messages::Header header{.stamp = sensors::stamp_of(answer.time_s), .frame_id = frame_};
-    say(distances_, distances_message(answer, names_, header));
+    messages::Distances distances = distances_message(answer, names_, header);
+    tell_basis(answer, sensors::stamp_of, distances);
+    say(distances_, distances);
     if (for_markers_.is_due(answer.time_s)) {
       say(markers_, markers_message(answer, names_, header));
     }

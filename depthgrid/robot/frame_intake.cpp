@@ -9,6 +9,7 @@ namespace depthgrid::robot {
 FrameIntake::FrameIntake(const Rig& rig, const PlacedRobot& robot, const JointHistory& history,
                          const ExposureSettings& settings, const CapsuleOptions& capsules)
     : cameras_(rig.cameras),
+      history_(history),
       padding_m_(settings.removal.padding_m),
       report_(rig.cameras.size()),
       frames_(rig.cameras.size()) {
@@ -23,14 +24,15 @@ Frame FrameIntake::frame(std::size_t camera, const Frame& seen) noexcept {
   return camera < cameras_.size() ? frame(camera, seen, cameras_[camera].T_world_camera) : Frame{};
 }
 
-Frame FrameIntake::frame(std::size_t camera, const Frame& seen, const Pose& T_world_camera) noexcept {
+Frame FrameIntake::frame(std::size_t camera, const Frame& seen, const Pose& T_world_camera,
+                         const JointMoment& known) noexcept {
   if (camera >= cameras_.size()) {
     return {};
   }
-  const ExposedRobot robot = robots_[camera]->find(seen.time_s, T_world_camera, &seen.depth);
+  const ExposedRobot robot = robots_[camera]->find(seen.time_s, T_world_camera, &seen.depth, known);
   const Frame result{seen.depth, robot.view, seen.time_s};
   const bool removed = robot.view.near_m != nullptr && why_unusable(result, cameras_[camera]) == nullptr;
-  report_[camera] = {robot.joints, removed, removed ? robot.view.blind_m : 0.0};
+  report_[camera] = {robot.joints, removed, removed ? robot.view.blind_m : 0.0, robot.known};
   return result;
 }
 

@@ -19,6 +19,7 @@ struct IntakeReport {
   JointsAtTime joints;         ///< of the exposure, or why they are not known
   bool robot_removed = false;  ///< false: the robot is its own obstacle in this image, or nobody can use it
   double blind_m = 0;          ///< RobotView::blind_m of what was removed; 0 where nothing was
+  JointMoment known{};         ///< what the history held
 };
 
 /// The robot in all cameras of a rig.
@@ -38,7 +39,12 @@ class FrameIntake {
   /// positions of the exposure are not known the robot is not removed, and so is its own obstacle. The frame points
   /// into this object and to the image; good until the camera's next one. A camera that the rig lacks gives no image.
   [[nodiscard]] Frame frame(std::size_t camera, const Frame& seen) noexcept;
-  [[nodiscard]] Frame frame(std::size_t camera, const Frame& seen, const Pose& T_world_camera) noexcept;
+  [[nodiscard]] Frame frame(std::size_t camera, const Frame& seen, const Pose& T_world_camera) noexcept {
+    return frame(camera, seen, T_world_camera, history_.now());
+  }
+  /// As at that moment of the history.
+  [[nodiscard]] Frame frame(std::size_t camera, const Frame& seen, const Pose& T_world_camera,
+                            const JointMoment& known) noexcept;
 
   /// All cameras that do not move, in the rig's order, each at its own time; those after the last of `seen` give no
   /// image.
@@ -53,6 +59,7 @@ class FrameIntake {
 
  private:
   std::vector<RigCamera> cameras_;
+  const JointHistory& history_;
   double padding_m_;
   std::vector<std::unique_ptr<RobotAtExposure>> robots_;
   std::vector<IntakeReport> report_;

@@ -29,11 +29,15 @@ JointHistory::JointHistory(std::size_t joints, std::size_t capacity, double max_
   }
 }
 
+bool JointHistory::can_add(double time_s, std::span<const double> q) const noexcept {
+  const auto finite = [](double value) { return std::isfinite(value); };
+  return q.size() == joints_ && finite(time_s) && time_s > last_time_s_ && std::all_of(q.begin(), q.end(), finite);
+}
+
 // Release stores keep the odd version before the values for who reads a value; acquire loads keep the second look at
 // the version behind the values.
 bool JointHistory::add(double time_s, std::span<const double> q) noexcept {
-  const auto finite = [](double value) { return std::isfinite(value); };
-  if (q.size() != joints_ || !finite(time_s) || !(time_s > last_time_s_) || !std::all_of(q.begin(), q.end(), finite)) {
+  if (!can_add(time_s, q)) {
     return false;
   }
   const std::uint64_t sample = count_.load(std::memory_order_relaxed);
@@ -106,8 +110,8 @@ bool JointHistory::last_before(double time_s, std::uint64_t count, std::uint64_t
 
 bool JointHistory::greatest_motion(double time_s, double time_error_s, std::span<const double> q,
                                    std::span<const double> most_speed, std::span<const double> most_acceleration,
-                                   std::span<double> away) const noexcept {
-  const std::uint64_t count = count_.load(std::memory_order_acquire);
+                                   std::span<double> away, const JointMoment& known) const noexcept {
+  const std::uint64_t count = known.samples;
   const bool sizes = q.size() == joints_ && most_speed.size() == joints_ && most_acceleration.size() == joints_ &&
                      away.size() == joints_;
   const double from_s = time_s - time_error_s;
@@ -161,8 +165,17 @@ bool JointHistory::greatest_motion(double time_s, double time_error_s, std::span
   return (!pair || read_time(count - 2, before_s)) && read_time(count - 1, newest_s);
 }
 
-JointsAtTime JointHistory::at(double time_s, std::span<double> q) const noexcept {
-  const std::uint64_t count = count_.load(std::memory_order_acquire);
+JointMoment JointHistory::now() const noexcept {
+  JointMoment moment;
+  moment.samples = count_.load(std::memory_order_acquire);
+  if (moment.samples > 0 && !read_time(moment.samples - 1, moment.newest_s)) {
+    return {};  // the ring went once around meanwhile
+  }
+  return moment;
+}
+
+JointsAtTime JointHistory::at(double time_s, std::span<double> q, const JointMoment& known) const noexcept {
+  const std::uint64_t count = known.samples;
   if (count == 0 || q.size() != joints_) {
     return {JointAnswer::no_samples, 0};
   }

@@ -29,6 +29,12 @@ struct JointsAtTime {
   }
 };
 
+/// What a history holds at some moment: what is added later does not count for who asks with it.
+struct JointMoment {
+  std::uint64_t samples = 0;  ///< ever added
+  double newest_s = 0;        ///< of the last of them; no matter without samples
+};
+
 /// A ring of samples. One thread adds, any number ask at the same time; neither locks nor allocates nor throws.
 /// Positions are interpolated linearly: over samples h apart that errs by at most h^2 / 8 times the joint's
 /// acceleration (2 ms, 10 rad/s^2: 5e-6 rad). A continuous joint's positions must not jump by a turn.
@@ -42,10 +48,17 @@ class JointHistory {
   /// Positions q (rad or m) at time_s, on the clock of the cameras. False, and nothing added, when the time is not
   /// later than the last one, a number is not finite or the size is wrong.
   bool add(double time_s, std::span<const double> q) noexcept;
+  /// Whether add() would; for the thread that adds.
+  [[nodiscard]] bool can_add(double time_s, std::span<const double> q) const noexcept;
+
+  /// What it holds now. Of several calls with one moment the answers fit together, and come again with the same
+  /// samples.
+  [[nodiscard]] JointMoment now() const noexcept;
 
   /// Positions at time_s into q, which has one element a joint (else `no_samples`). q is arbitrary where they are not
-  /// known.
-  [[nodiscard]] JointsAtTime at(double time_s, std::span<double> q) const noexcept;
+  /// known. `known`: a moment of this history.
+  [[nodiscard]] JointsAtTime at(double time_s, std::span<double> q) const noexcept { return at(time_s, q, now()); }
+  [[nodiscard]] JointsAtTime at(double time_s, std::span<double> q, const JointMoment& known) const noexcept;
 
   /// How far each joint may be from q (what at(time_s) gave) at any time within time_error_s of time_s, into away: rad
   /// or m. Where samples lie around that window it is what they moved; between two of them h apart a joint leaves the
@@ -55,7 +68,12 @@ class JointHistory {
   /// where the window holds a gap longer than max_gap_s, or a size is wrong.
   [[nodiscard]] bool greatest_motion(double time_s, double time_error_s, std::span<const double> q,
                                      std::span<const double> most_speed, std::span<const double> most_acceleration,
-                                     std::span<double> away) const noexcept;
+                                     std::span<double> away) const noexcept {
+    return greatest_motion(time_s, time_error_s, q, most_speed, most_acceleration, away, now());
+  }
+  [[nodiscard]] bool greatest_motion(double time_s, double time_error_s, std::span<const double> q,
+                                     std::span<const double> most_speed, std::span<const double> most_acceleration,
+                                     std::span<double> away, const JointMoment& known) const noexcept;
 
  private:
   /// Sample i is complete while `version` is 2 i + 2; it is odd while the slot is written.

@@ -55,15 +55,17 @@ RobotAtExposure::RobotAtExposure(PlacedRobot robot, const JointHistory& history,
   }
 }
 
-ExposedRobot RobotAtExposure::find(double time_s, const Pose& T_world_camera, const DepthView* reading) noexcept {
+ExposedRobot RobotAtExposure::find(double time_s, const Pose& T_world_camera, const DepthView* reading,
+                                   const JointMoment& known) noexcept {
   ExposedRobot result;
-  result.joints = history_.at(time_s, q_);
+  result.known = known;
+  result.joints = history_.at(time_s, q_, known);
   if (!result.joints.known() || !robot_.link_poses(q_, T_world_link_)) {
     return result;
   }
   const double error_s = settings_.time_error_s + result.joints.time_error_s;
   result.measured_motion = history_.greatest_motion(time_s, settings_.time_error_s, q_, settings_.joint_speeds,
-                                                    settings_.joint_accelerations, window_);
+                                                    settings_.joint_accelerations, window_, known);
   for (std::size_t j = 0; j < moved_.size(); ++j) {
     const double at_most = settings_.joint_speeds[j] * error_s;
     // Without an acceleration, what a joint may do between two samples counts no more than its speed within the error.

@@ -25,6 +25,7 @@ struct ExposureSettings {
 struct ExposedRobot {
   JointsAtTime joints;           ///< where the positions come from
   RobotView view;                ///< for Frame::robot; without robot where the positions are not known
+  JointMoment known;             ///< what the history held
   bool measured_motion = false;  ///< the padding for motion comes from the samples around, not from speeds alone
 };
 
@@ -41,7 +42,12 @@ class RobotAtExposure {
   /// joint_accelerations no more than what they can at joint_speeds within the time error and joints.time_error_s, and
   /// that where the samples do not tell. The view is good until the next call.
   [[nodiscard]] ExposedRobot find(double time_s, const Pose& T_world_camera,
-                                  const DepthView* reading = nullptr) noexcept;
+                                  const DepthView* reading = nullptr) noexcept {
+    return find(time_s, T_world_camera, reading, history_.now());
+  }
+  /// As it was answered at that moment of the history.
+  [[nodiscard]] ExposedRobot find(double time_s, const Pose& T_world_camera, const DepthView* reading,
+                                  const JointMoment& known) noexcept;
 
   /// As of the last call that found the positions.
   [[nodiscard]] std::span<const Pose> T_world_link() const noexcept { return T_world_link_; }

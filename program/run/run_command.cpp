@@ -37,6 +37,7 @@ constexpr int kMostLines = 10;
 
 struct RunOptions {
   std::string cell;
+  std::string record;
   std::optional<double> seconds;
 };
 
@@ -142,7 +143,13 @@ void run_cell(const RunOptions& options) {
   if (options.seconds && !(*options.seconds > 0)) {
     fail_usage("--seconds ", *options.seconds, ": must be above 0");
   }
-  const cell::Cell cell = cell::load_cell(options.cell);
+  cell::Cell cell = cell::load_cell(options.cell);
+  if (!options.record.empty()) {
+    if (!cell.outputs.record.empty()) {
+      warn("--record " + options.record + " in place of " + cell.outputs.record.string() + " of the cell file");
+    }
+    cell.outputs.record = options.record;
+  }
   const cell::CellSetup setup = cell::setup(cell);
   for (const std::string& line : cell::implausible(cell, setup)) {
     warn(line);
@@ -161,6 +168,9 @@ void run_cell(const RunOptions& options) {
   if (!cell.outputs.jsonl.empty()) {
     monitor.add(std::make_unique<JsonLines>(cell.outputs.jsonl, monitor.names()));
     outputs.push_back(cell.outputs.jsonl.string());
+  }
+  if (!cell.outputs.record.empty()) {
+    monitor.record(monitor::recorder(cell, setup, monitor.names()));
   }
   Teller teller(cell.outputs.terminal, monitor.names());
   ask_before_the_end();
@@ -183,6 +193,10 @@ void run_cell(const RunOptions& options) {
   teller.end();
   std::FILE* const out = cell.outputs.jsonl.filename() == "-" ? stderr : stdout;
   (void)std::fputs(summary(monitor, outputs, teller.stops()).c_str(), out);
+  const auto recorded = monitor.report().recorded;
+  if (recorded && recorded->failed) {
+    fail("the recording is not whole, as was said above");
+  }
 }
 
 }  // namespace
@@ -191,6 +205,8 @@ void add_run_command(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App& command = *app.add_subcommand("run", "distances of a robot cell, live: cameras and joints in, answers out");
   command.add_option("CELL", options->cell, "the cell file (depthgrid cell new writes one)")->required();
+  command.add_option("--record", options->record,
+                     "makes this MCAP file: images, joint states, answers and events, as ROS 2 records them");
   command.add_option("--seconds", options->seconds, "ends after this many seconds (default: Ctrl-C ends it)");
   command.footer(
       "Reads the cell file, opens its cameras and joints, and answers at a fixed rate how far the robot's links are "

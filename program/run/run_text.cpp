@@ -41,6 +41,18 @@ std::string counts(const monitor::SourceCounts& source, const char* what) {
   return text;
 }
 
+std::string recorded_text(const monitor::RecorderCounts& recorded) {
+  std::string text;
+  const auto add = [&](std::uint64_t count, std::uint64_t dropped, const char* what) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+    text += dropped > 0 ? " (" + std::to_string(dropped) + " dropped)" : "";
+  };
+  add(recorded.images, recorded.dropped_images, "images");
+  add(recorded.joint_states, recorded.dropped_joint_states, "joint states");
+  add(recorded.answers, recorded.dropped_answers, "answers");
+  return text + (recorded.failed ? "; it failed" : "");
+}
+
 }  // namespace
 
 std::string status_line(const monitor::CellAnswer& answer, const monitor::Names& names) {
@@ -96,6 +108,9 @@ std::string summary(const monitor::Monitor& monitor, const std::vector<std::stri
   }
   for (std::size_t i = 0; i < report.passed_over.size() && i < outputs.size(); ++i) {
     text += "  " + outputs[i] + ": " + std::to_string(report.passed_over[i]) + " answers passed over\n";
+  }
+  if (report.recorded) {
+    text += "  recording: " + recorded_text(*report.recorded) + "\n";
   }
   if (!stops.empty()) {
     text += "  the last stops:\n";

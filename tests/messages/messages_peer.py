@@ -33,6 +33,7 @@ def parsed(name, definition):
 
 
 NUMBERS = {"bool": None, "byte": numpy.uint8, "uint8": numpy.uint8, "int32": numpy.int32, "uint32": numpy.uint32,
+           "uint64": numpy.uint64,
            "float32": numpy.float32, "float64": numpy.float64}
 
 

@@ -10,6 +10,7 @@
 #include "depthgrid/cell/cell_file.hpp"
 #include "depthgrid/monitor/asking_line.hpp"
 #include "depthgrid/monitor/camera_line.hpp"
+#include "depthgrid/monitor/joint_line.hpp"
 #include "depthgrid/robot/frame_intake.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/simulated_camera.hpp"
@@ -44,7 +45,7 @@ struct Cell {
           std::make_unique<sensors::SimulatedCamera>(simulated, setup.rig.cameras[k], 20, k), setup.rig.cameras[k],
           settings, *evaluator, &*intake));
     }
-    asking.emplace(setup, 0.1, *evaluator, &*history, &*joints, lines);
+    asking.emplace(setup, 0.1, *evaluator, &*history, lines);
   }
 
   /// Every source in a thread of its own, for so long.

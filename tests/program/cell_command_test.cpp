@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
 #include <string>
 
 #include "depthgrid/cell/cell_file.hpp"
@@ -108,6 +109,25 @@ TEST(RunCommand, AnswersARecordingAndSumsUp) {
   EXPECT_TRUE(lines.ends_with("}]}\n")) << "the last line is whole";
   // The ball is within the box, whose border is 0.5 m away, and the wall is 0.75 m away: nothing within rho.
   EXPECT_TRUE(lines.find(R"("state":"beyond_rho")") != std::string::npos);
+}
+
+TEST(RunCommand, RecordsAndWritesNothingOver) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  const CommandResult result = run_command("run cell.yaml --seconds 1 --record run.mcap", folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("\n  recording: [1-9][0-9]* images, 0 joint states, [1-9][0-9]* a"));
+  const CommandResult again = run_command("run cell.yaml --seconds 1 --record run.mcap", folder);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.err, HasSubstr("run.mcap: is there already, and is not written over: choose another name"));
+  edit(folder, "cell.yaml", "outputs: {", "outputs: {record: mine.mcap, ");
+  const CommandResult both = run_command("run cell.yaml --seconds 0.5 --record other.mcap", folder);
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.err, HasSubstr("--record other.mcap in place of mine.mcap of the cell file"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "mine.mcap"));
+  EXPECT_EQ(run_command("run cell.yaml --seconds 0.5", folder).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "mine.mcap"));
 }
 
 TEST(RunCommand, CtrlCEndsItWithASummary) {
