@@ -45,9 +45,10 @@ struct MarginEntry {
 
 struct CameraEntry {
   std::string name;
-  std::filesystem::path recording{};          ///< its folder
+  std::filesystem::path recording{};          ///< its folder, or an MCAP file
   std::string recorded_as{};                  ///< the camera's id in it
-  std::string device{};                       ///< serial number, or topic
+  std::string device{};                       ///< serial number, or topic; of a recording empty: found by recorded_as
+  std::string info_topic{};                   ///< of an MCAP file's camera_info; empty: beside the images
   double rate_hz = 30;                        ///< of a simulated camera
   std::filesystem::path rig_file{};           ///< says intrinsics and pose of the camera of this name
   std::optional<PinholeCamera> intrinsics{};  ///< none: from the rig file, or from the device

@@ -20,9 +20,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 12> kCellKeys{
     "name",   "cameras", "robot", "space", "policies", "v_max_m_s", "smallest_obstacle_m",
     "memory", "ask",     "ages",  "ros2",  "outputs"};
-constexpr std::array<std::string_view, 15> kCameraKeys{
-    "name",        "source", "recording",  "recorded_as", "repeat", "serial",  "topic",
-    "rate_hz",     "rig",    "intrinsics", "pose",        "sensor", "margins", "smallest_obstacle_m",
+constexpr std::array<std::string_view, 16> kCameraKeys{
+    "camera_info", "name",   "source", "recording", "recorded_as",
+    "repeat",      "serial", "topic",  "rate_hz",   "rig",
+    "intrinsics",  "pose",   "sensor", "margins",   "smallest_obstacle_m",
     "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<std::string_view, 5> kPoseKeys{"position_m", "look_at_m", "up", "rpy_deg", "quaternion_xyzw"};
@@ -145,24 +146,29 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
   camera.source = kind_of(section.word("source", kSources, "where the images come from: recording, simulated, ..."));
   switch (camera.source) {
     case SourceKind::recording:
-      refuse_foreign(section, camera.source, std::array<std::string_view, 3>{"serial", "topic", "rate_hz"});
-      camera.recording = folder / section.text("recording", "the folder that holds a rig.json");
+      refuse_foreign(section, camera.source, std::array<std::string_view, 2>{"serial", "rate_hz"});
+      camera.recording = folder / section.text("recording", "the folder that holds a rig.json, or an MCAP file");
+      camera.device = section.text("topic", "of the depth images in an MCAP file", "");
+      camera.info_topic = section.text("camera_info", "of their calibration in an MCAP file", "");
       camera.recorded_as = section.text("recorded_as", "the camera's id in it", camera.name);
       camera.repeat = section.yes("repeat", false);
       break;
     case SourceKind::simulated:
-      refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 5>{"serial", "topic", "recording", "recorded_as", "repeat"});
+      refuse_foreign(
+          section, camera.source,
+          std::array<std::string_view, 6>{"camera_info", "serial", "topic", "recording", "recorded_as", "repeat"});
       camera.rate_hz = section.number("rate_hz", {0, 1000, true}, "Hz", "images a second", 30);
       break;
     case SourceKind::ros2:
-      refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 5>{"serial", "recording", "recorded_as", "repeat", "rate_hz"});
+      refuse_foreign(
+          section, camera.source,
+          std::array<std::string_view, 6>{"camera_info", "serial", "recording", "recorded_as", "repeat", "rate_hz"});
       camera.device = section.text("topic", "of the depth images, for instance /left/depth/image_rect_raw");
       break;
     default:
-      refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 5>{"topic", "recording", "recorded_as", "repeat", "rate_hz"});
+      refuse_foreign(
+          section, camera.source,
+          std::array<std::string_view, 6>{"camera_info", "topic", "recording", "recorded_as", "repeat", "rate_hz"});
       camera.device = section.text("serial", "the serial number on the camera: it says which of several it is");
   }
 }
@@ -219,8 +225,12 @@ JointsEntry joints_of(const Section& section, const std::filesystem::path& folde
   JointsEntry joints;
   joints.source = kind_of(section.word("source", kJointSources, "where joint positions come from"));
   if (joints.source == SourceKind::recording) {
-    refuse_foreign(section, joints.source, std::array<std::string_view, 2>{"topic", "rate_hz"});
-    joints.file = folder / section.text("file", "a table of joint positions with times");
+    refuse_foreign(section, joints.source, std::array<std::string_view, 1>{"rate_hz"});
+    joints.file = folder / section.text("file", "a table of joint positions with times, or an MCAP file");
+    joints.topic = section.text("topic", "of joint states in an MCAP file", "");
+    if (!joints.topic.empty() && joints.file.extension() != ".mcap") {
+      section.refuse("topic", "is of an MCAP file, and the joints' file is none: remove it");
+    }
     joints.repeat = section.yes("repeat", false);
   } else if (joints.source == SourceKind::ros2) {
     refuse_foreign(section, joints.source, std::array<std::string_view, 3>{"file", "repeat", "rate_hz"});

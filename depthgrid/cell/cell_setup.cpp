@@ -26,10 +26,7 @@ std::string words(double value) {
 RigCamera stated_elsewhere(const CameraEntry& entry, std::string& origin) {
   if (entry.source == SourceKind::recording) {
     origin = entry.recording.string();
-    return files::Recording(entry.recording,
-                            {.camera_ids = {entry.recorded_as}, .near_m = std::nullopt, .far_m = std::nullopt})
-        .rig()
-        .cameras.front();
+    return files::Recording(entry.recording, recording_options(entry)).rig().cameras.front();
   }
   if (!entry.rig_file.empty()) {
     origin = entry.rig_file.string();
@@ -170,6 +167,23 @@ std::vector<AskedPart> parts_of(const Cell& cell, const std::optional<robot::Pla
 }
 
 }  // namespace
+
+files::RecordingOptions recording_options(const CameraEntry& entry) {
+  files::RecordingOptions options;
+  options.camera_ids = {entry.recorded_as};
+  if (files::is_mcap(entry.recording)) {
+    if (!entry.device.empty()) {
+      options.mcap.depth_topics = {entry.recorded_as + "=" + entry.device};
+    }
+    options.mcap.info_topic = entry.info_topic;
+    options.mcap.intrinsics = entry.intrinsics;
+    options.mcap.T_world_camera = entry.T_world_camera;
+  } else if (!entry.device.empty() || !entry.info_topic.empty()) {
+    fail(entry.place, ": topic, camera_info: are of MCAP files, and ", entry.recording.string(),
+         " is none: remove them");
+  }
+  return options;
+}
 
 robot::RobotModel robot_model(const RobotEntry& entry) {
   return entry.is_built_in ? robot::kuka_lwr4() : robot::RobotModel(robot::load_urdf(entry.urdf));

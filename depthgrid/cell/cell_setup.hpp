@@ -8,6 +8,7 @@
 #include "depthgrid/cell/cell.hpp"
 #include "depthgrid/core/capsule.hpp"
 #include "depthgrid/core/rig.hpp"
+#include "depthgrid/files/recording.hpp"
 #include "depthgrid/robot/link_capsules.hpp"
 #include "depthgrid/robot/placed_robot.hpp"
 #include "depthgrid/robot/robot_at_exposure.hpp"
@@ -36,6 +37,9 @@ struct CellSetup {
 /// Reads the robot's and the rig's files and what recordings say of their cameras. Throws Error that names the place in
 /// the cell file, or the file that is broken: a camera whose errors nobody states, a link that the robot lacks.
 [[nodiscard]] CellSetup setup(const Cell& cell);
+
+/// What of its recording a camera is: its id, topics, and what the cell's file says in place of the recording.
+[[nodiscard]] files::RecordingOptions recording_options(const CameraEntry& entry);
 
 /// The robot of the file alone. Throws Error.
 [[nodiscard]] robot::RobotModel robot_model(const RobotEntry& entry);

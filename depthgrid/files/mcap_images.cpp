@@ -123,10 +123,19 @@ McapImages::McapImages(const std::filesystem::path& file, const McapChoice& choi
   if (choice.rig.empty()) {
     rig_file_.rig.name = printable(file.stem().string());
     for (std::size_t k = 0; k < topics_.size(); ++k) {
-      rig_file_.rig.cameras[k] = camera_of(topics_[k]);
+      rig_file_.rig.cameras[k] = camera_of(topics_[k], choice);
     }
-    place_cameras(choice);
+    if (choice.T_world_camera) {
+      rig_file_.rig.cameras.front().T_world_camera = *choice.T_world_camera;
+    } else {
+      place_cameras(choice);
+    }
     validate(rig_file_.rig);
+  }
+  const bool of_one = choice.intrinsics || choice.T_world_camera || !choice.info_topic.empty();
+  if (of_one && (topics_.size() != 1 || !choice.rig.empty())) {
+    fail_choice(name_, ": calibration, place or camera_info is stated of one camera, and ", topics_.size(),
+                " are chosen", choice.rig.empty() ? "" : ", with a rig file");
   }
   rig_file_.count_stated = false;
   rig_file_.simultaneous = true;  // what the time stamps say
@@ -288,9 +297,18 @@ void McapImages::read_stamps(Topic& topic) {
   }
 }
 
-RigCamera McapImages::camera_of(const Topic& topic) {
+RigCamera McapImages::camera_of(const Topic& topic, const McapChoice& choice) {
+  if (choice.intrinsics) {
+    RigCamera camera;
+    camera.id = topic.camera_id;
+    camera.intrinsics = *choice.intrinsics;
+    camera.metres_per_unit = messages::kMetresPerUnit;
+    return camera;
+  }
   const std::string where = name_ + ": topic " + in_quotes(topic.channel->topic);
-  const std::string name = std::string(parent_of(base_topic(topic.channel->topic))) + "/camera_info";
+  const std::string name = !choice.info_topic.empty()
+                               ? choice.info_topic
+                               : std::string(parent_of(base_topic(topic.channel->topic))) + "/camera_info";
   const McapChannel* channel = reader_.channel(name);
   if (channel == nullptr || channel->type != kCameraInfo) {
     std::string others;

@@ -59,7 +59,7 @@ class McapImages {
   void check_depth(const McapChannel& channel);
   [[nodiscard]] std::string list_of_topics();
   void read_stamps(Topic& topic);
-  [[nodiscard]] RigCamera camera_of(const Topic& topic);
+  [[nodiscard]] RigCamera camera_of(const Topic& topic, const McapChoice& choice);
   void place_cameras(const McapChoice& choice);
 
   std::string name_;

@@ -91,6 +91,8 @@ Recording::Recording(const std::filesystem::path& path, const RecordingOptions& 
   }
 }
 
+bool is_mcap(const std::filesystem::path& recording) { return !mcap_recording(recording).empty(); }
+
 int Recording::frame_count() const noexcept { return table_->count(); }
 int Recording::frame_number(int index) const noexcept { return table_->number(index); }
 bool Recording::has_time_stamps() const noexcept { return table_->by_time(); }

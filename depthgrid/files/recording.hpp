@@ -12,6 +12,7 @@
 #include "depthgrid/core/distortion.hpp"
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/frame.hpp"
+#include "depthgrid/core/pose.hpp"
 #include "depthgrid/files/png.hpp"
 #include "depthgrid/files/rig_file.hpp"
 
@@ -32,9 +33,14 @@ struct McapChoice {
   std::string world_frame;              ///< empty: the frame at the root of /tf_static
   std::filesystem::path rig;            ///< in place of camera_info and /tf_static: a rig file; its images are not read
   std::optional<double> tolerance_s{};  ///< how far apart images of one frame may be; none: the rig file's
+  // Of one camera chosen alone, without a rig file:
+  std::string info_topic;                     ///< its sensor_msgs/CameraInfo; empty: camera_info beside its images
+  std::optional<PinholeCamera> intrinsics{};  ///< in place of that, without lens distortion
+  std::optional<Pose> T_world_camera{};       ///< in place of /tf_static
 
   [[nodiscard]] bool is_set() const noexcept {
-    return !depth_topics.empty() || !world_frame.empty() || !rig.empty() || tolerance_s;
+    return !depth_topics.empty() || !world_frame.empty() || !rig.empty() || tolerance_s || !info_topic.empty() ||
+           intrinsics || T_world_camera;
   }
 };
 
@@ -50,6 +56,9 @@ struct RecordingOptions {
   std::optional<int> lateral_px = std::nullopt;
   McapChoice mcap{};
 };
+
+/// Whether a recording there is an MCAP file, or the folder of a ROS 2 bag with one. Throws Error for several.
+[[nodiscard]] bool is_mcap(const std::filesystem::path& recording);
 
 class McapImages;
 struct McapPixels;

@@ -13,6 +13,9 @@
 
 namespace depthgrid::monitor {
 
+/// Samples that are kept of the joints: two seconds at 1 kHz.
+inline constexpr std::size_t kJointSamples = 2000;
+
 class JointLine {
  public:
   /// The history outlives it, and nobody else adds to it.

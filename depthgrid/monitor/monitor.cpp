@@ -18,9 +18,6 @@
 namespace depthgrid::monitor {
 namespace {
 
-/// Samples that are kept of the joints: two seconds at 1 kHz.
-constexpr std::size_t kJointSamples = 2000;
-
 class CallingOutput final : public Output {
  public:
   explicit CallingOutput(std::function<void(const CellAnswer&)> function) : function_(std::move(function)) {}

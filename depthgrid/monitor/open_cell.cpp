@@ -42,7 +42,7 @@ std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
   };
   for (const cell::CameraEntry& camera : cell.cameras) {
     if (camera.source == SourceKind::recording) {
-      const sensors::RecordedSpan span = sensors::recorded_span(camera.recording, camera.recorded_as);
+      const sensors::RecordedSpan span = sensors::recorded_span(camera.recording, cell::recording_options(camera));
       first_s = std::min(first_s, span.first_s);
       last_s = std::max(last_s, span.last_s);
       repeat_all(camera.repeat, camera.place);
@@ -70,7 +70,7 @@ std::unique_ptr<sensors::JointSource> joints_of(const cell::Cell& cell, const ce
       if (playback == nullptr) {
         fail(cell.robot->place, ": joints: a recording of joints is played beside a camera's, and no camera has one");
       }
-      return std::make_unique<sensors::RecordedJoints>(joints.file, names, playback);
+      return std::make_unique<sensors::RecordedJoints>(joints.file, names, playback, joints.topic);
     case SourceKind::ros2:
       return std::make_unique<sensors::Ros2Joints>(ros2, joints.topic, names);
     default:
@@ -118,7 +118,7 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const
         break;
       case SourceKind::recording:
         sources.cameras.push_back(
-            std::make_unique<sensors::RecordedCamera>(camera.recording, camera.recorded_as, playback));
+            std::make_unique<sensors::RecordedCamera>(camera.recording, cell::recording_options(camera), playback));
         break;
       case SourceKind::ros2:
         sources.cameras.push_back(std::make_unique<sensors::Ros2Camera>(ros2, camera.device));

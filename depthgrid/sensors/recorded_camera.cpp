@@ -18,7 +18,11 @@ files::RecordingOptions only(const std::string& camera) {
 }  // namespace
 
 RecordedSpan recorded_span(const std::filesystem::path& recording, const std::string& camera) {
-  const files::Recording opened(recording, only(camera));
+  return recorded_span(recording, only(camera));
+}
+
+RecordedSpan recorded_span(const std::filesystem::path& recording, const files::RecordingOptions& options) {
+  const files::Recording opened(recording, options);
   const auto first_s = opened.time_s(0);
   const auto last_s = opened.time_s(opened.frame_count() - 1);
   if (!first_s || !last_s) {
@@ -27,14 +31,18 @@ RecordedSpan recorded_span(const std::filesystem::path& recording, const std::st
   return {opened.start_s() + *first_s, opened.start_s() + *last_s};
 }
 
-RecordedCamera::RecordedCamera(std::filesystem::path recording, std::string camera,
+RecordedCamera::RecordedCamera(std::filesystem::path recording, files::RecordingOptions options,
                                std::shared_ptr<const Playback> playback)
-    : path_(std::move(recording)), camera_(std::move(camera)), playback_(std::move(playback)) {}
+    : path_(std::move(recording)), options_(std::move(options)), playback_(std::move(playback)) {}
+
+RecordedCamera::RecordedCamera(std::filesystem::path recording, const std::string& camera,
+                               std::shared_ptr<const Playback> playback)
+    : RecordedCamera(std::move(recording), only(camera), std::move(playback)) {}
 
 void RecordedCamera::open() {
-  recording_.emplace(path_, only(camera_));
+  recording_.emplace(path_, options_);
   const RigCamera& camera = recording_->rig().cameras.front();
-  info_ = {"recording " + path_.string(), camera_, "the recording's", camera.intrinsics, camera.metres_per_unit};
+  info_ = {"recording " + path_.string(), camera.id, "the recording's", camera.intrinsics, camera.metres_per_unit};
   reason_.clear();
   index_ = 0;
   round_ = playback_->round_at(clock_now_s());

@@ -1,4 +1,4 @@
-// A camera of a recording: a folder with a rig.json and 16-bit PNG images.
+// A camera of a recording: a folder with a rig.json and 16-bit PNG images, or an MCAP file.
 #pragma once
 
 #include <filesystem>
@@ -18,12 +18,18 @@ struct RecordedSpan {
   double last_s = 0;
 };
 
-/// Throws Error as files::Recording does, and where the recording says no times: neither rate_hz nor time stamps.
+/// `options` choose one camera. Throws Error as files::Recording does, and where the recording says no times: neither
+/// rate_hz nor time stamps.
+[[nodiscard]] RecordedSpan recorded_span(const std::filesystem::path& recording,
+                                         const files::RecordingOptions& options);
 [[nodiscard]] RecordedSpan recorded_span(const std::filesystem::path& recording, const std::string& camera);
 
 class RecordedCamera final : public DepthSource {
  public:
-  RecordedCamera(std::filesystem::path recording, std::string camera, std::shared_ptr<const Playback> playback);
+  /// `options` choose one camera.
+  RecordedCamera(std::filesystem::path recording, files::RecordingOptions options,
+                 std::shared_ptr<const Playback> playback);
+  RecordedCamera(std::filesystem::path recording, const std::string& camera, std::shared_ptr<const Playback> playback);
 
   void open() override;
   void close() noexcept override { recording_.reset(); }
@@ -38,7 +44,7 @@ class RecordedCamera final : public DepthSource {
   [[nodiscard]] bool go_to(int index);
 
   std::filesystem::path path_;
-  std::string camera_;
+  files::RecordingOptions options_;
   std::shared_ptr<const Playback> playback_;
   std::optional<files::Recording> recording_;
   int index_ = 0;  ///< the next one

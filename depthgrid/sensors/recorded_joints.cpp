@@ -4,16 +4,23 @@
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/files/mcap_joints.hpp"
 #include "depthgrid/sensors/clock.hpp"
 
 namespace depthgrid::sensors {
 
 RecordedJoints::RecordedJoints(std::filesystem::path file, std::vector<std::string> joints,
-                               std::shared_ptr<const Playback> playback)
-    : file_(std::move(file)), joints_(std::move(joints)), playback_(std::move(playback)), q_(joints_.size()) {}
+                               std::shared_ptr<const Playback> playback, std::string topic)
+    : file_(std::move(file)),
+      topic_(std::move(topic)),
+      joints_(std::move(joints)),
+      playback_(std::move(playback)),
+      q_(joints_.size()) {}
 
 void RecordedJoints::open() {
-  files::JointTable table = files::load_joint_table(file_, joints_);
+  const bool is_mcap = file_.extension() == ".mcap";
+  files::JointTable table =
+      is_mcap ? files::load_mcap_joints(file_, topic_, joints_) : files::load_joint_table(file_, joints_);
   if (table.time_s.empty()) {
     fail(file_.string(), ": has no times, so it cannot be played: a column time");
   }
@@ -28,7 +35,7 @@ void RecordedJoints::open() {
     }
   }
   table_ = std::move(table);
-  info_ = {"table " + file_.string(), "", "the recording's", std::nullopt, 0.001};
+  info_ = {(is_mcap ? "recording " : "table ") + file_.string(), "", "the recording's", std::nullopt, 0.001};
   row_ = 0;
   round_ = playback_->round_at(clock_now_s());
 }

@@ -1,4 +1,4 @@
-// Joint positions of a table of text (docs/command.md) as a source.
+// Joint positions of a table of text (docs/command.md), or of a topic in an MCAP file, as a source.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,11 @@ namespace depthgrid::sensors {
 /// Radians or metres, as in a URDF; a column in degrees says so.
 class RecordedJoints final : public JointSource {
  public:
-  RecordedJoints(std::filesystem::path file, std::vector<std::string> joints, std::shared_ptr<const Playback> playback);
+  /// `topic`: of an MCAP file (its name ends so); empty: its only one.
+  RecordedJoints(std::filesystem::path file, std::vector<std::string> joints, std::shared_ptr<const Playback> playback,
+                 std::string topic = {});
 
-  /// Throws Error as load_joint_table() does, where a joint has no column, or rows have no times.
+  /// Throws Error as load_joint_table() and load_mcap_joints() do, where a joint has no column, or rows have no times.
   void open() override;
   void close() noexcept override { table_ = {}; }
   [[nodiscard]] const SourceInfo& info() const noexcept override { return info_; }
@@ -27,6 +29,7 @@ class RecordedJoints final : public JointSource {
 
  private:
   std::filesystem::path file_;
+  std::string topic_;
   std::vector<std::string> joints_;
   std::shared_ptr<const Playback> playback_;
   files::JointTable table_;

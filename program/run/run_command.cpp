@@ -15,6 +15,7 @@
 
 #include "depthgrid/cell/cell_file.hpp"
 #include "depthgrid/core/printable_text.hpp"
+#include "depthgrid/monitor/cell_recording.hpp"
 #include "depthgrid/monitor/json_line.hpp"
 #include "depthgrid/monitor/open_cell.hpp"
 #include "depthgrid/sensors/clock.hpp"
@@ -39,6 +40,7 @@ struct RunOptions {
   std::string cell;
   std::string record;
   std::optional<double> seconds;
+  bool again = false;
 };
 
 struct CloseFile {
@@ -139,20 +141,72 @@ class Teller {
   std::deque<std::string> stops_;
 };
 
+/// Of a recording that is played: no camera has another image.
+bool is_over(const monitor::CellAnswer& answer) {
+  const auto* const end = answer.cameras.begin() + answer.camera_count;
+  return answer.camera_count > 0 && std::all_of(answer.cameras.begin(), end, [](const monitor::CameraBasis& camera) {
+           return camera.state == monitor::CameraState::ended;
+         });
+}
+
+void told_damage(const std::string& file, const monitor::CellRecording& recording) {
+  if (const std::string damage = recording.damage(); !damage.empty()) {
+    warn(file + ": " + damage);
+  }
+}
+
+void ask_again(const std::string& file) {
+  monitor::CellRecording recording(file);
+  told_damage(file, recording);
+  const cell::Cell cell = recording.cell();
+  const monitor::AskedAgain again = recording.ask_again(cell, cell::setup(cell));
+  std::string text = std::to_string(again.answers) + " answers, " + std::to_string(again.equal) +
+                     " are the same to the bit when they are asked again, " + std::to_string(again.differ) + " differ";
+  if (again.without_images + again.without_joints > 0) {
+    text += "; of " + std::to_string(again.without_images) + " an image, of " + std::to_string(again.without_joints) +
+            " a joint state is not in the recording";
+  }
+  (void)std::fputs((text + "\n").c_str(), stdout);
+  if (again.differ > 0) {
+    fail(file, ": ", again.first_difference);
+  }
+  if (again.equal == 0) {
+    fail(file, ": no answer could be asked again");
+  }
+}
+
 void run_cell(const RunOptions& options) {
   if (options.seconds && !(*options.seconds > 0)) {
     fail_usage("--seconds ", *options.seconds, ": must be above 0");
   }
-  cell::Cell cell = cell::load_cell(options.cell);
+  const bool is_recording = std::filesystem::path(options.cell).extension() == ".mcap";
+  if (options.again) {
+    if (!is_recording) {
+      fail_usage("--again asks the answers of a recording: depthgrid run FILE.mcap --again");
+    }
+    ask_again(options.cell);
+    return;
+  }
+  std::optional<monitor::CellRecording> recording;
+  if (is_recording) {
+    recording.emplace(options.cell);
+    told_damage(options.cell, *recording);
+  }
+  cell::Cell cell = recording ? recording->played() : cell::load_cell(options.cell);
   if (!options.record.empty()) {
     if (!cell.outputs.record.empty()) {
       warn("--record " + options.record + " in place of " + cell.outputs.record.string() + " of the cell file");
     }
     cell.outputs.record = options.record;
   }
-  const cell::CellSetup setup = cell::setup(cell);
-  for (const std::string& line : cell::implausible(cell, setup)) {
-    warn(line);
+  // Of a recording the calibration and margins are those that it ran with.
+  const cell::CellSetup setup = cell::setup(recording ? recording->cell() : cell);
+  if (recording) {
+    warn(options.cell + ": is played; of the cell's outputs none but the terminal");
+  } else {
+    for (const std::string& line : cell::implausible(cell, setup)) {
+      warn(line);
+    }
   }
   const auto ros2 = monitor::ros2_node(cell);
   monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup, ros2));
@@ -177,7 +231,8 @@ void run_cell(const RunOptions& options) {
   const double begin_s = sensors::clock_now_s();
   monitor.start();
   monitor::CellAnswer answer;
-  while (!stop_is_asked() && !(options.seconds && sensors::clock_now_s() - begin_s >= *options.seconds)) {
+  while (!stop_is_asked() && !(recording && is_over(answer)) &&
+         !(options.seconds && sensors::clock_now_s() - begin_s >= *options.seconds)) {
     (void)sensors::wait_until(options.seconds ? begin_s + *options.seconds : begin_s + 1e9, kLook_s);
     for (const monitor::Event& event : monitor.events()) {
       teller.event(event, begin_s);
@@ -204,9 +259,14 @@ void run_cell(const RunOptions& options) {
 void add_run_command(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App& command = *app.add_subcommand("run", "distances of a robot cell, live: cameras and joints in, answers out");
-  command.add_option("CELL", options->cell, "the cell file (depthgrid cell new writes one)")->required();
+  command
+      .add_option("CELL", options->cell,
+                  "the cell file (depthgrid cell new writes one), or a recording of one, FILE.mcap")
+      ->required();
   command.add_option("--record", options->record,
                      "makes this MCAP file: images, joint states, answers and events, as ROS 2 records them");
+  command.add_flag("--again", options->again,
+                   "of a recording: asks each recorded answer again, and says whether all are the same to the bit");
   command.add_option("--seconds", options->seconds, "ends after this many seconds (default: Ctrl-C ends it)");
   command.footer(
       "Reads the cell file, opens its cameras and joints, and answers at a fixed rate how far the robot's links are "

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "depthgrid/cell/cell_file.hpp"
+#include "depthgrid/files/mcap_export.hpp"
+#include "depthgrid/files/recording.hpp"
 #include "program/command.hpp"
 
 namespace depthgrid::test {
@@ -128,6 +130,52 @@ TEST(RunCommand, RecordsAndWritesNothingOver) {
   EXPECT_FALSE(std::filesystem::exists(folder / "mine.mcap"));
   EXPECT_EQ(run_command("run cell.yaml --seconds 0.5", folder).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "mine.mcap"));
+}
+
+TEST(RunCommand, ARecordingIsPlayedToItsEndAndAskedAgain) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  ASSERT_EQ(run_command("run cell.yaml --seconds 1 --record run.mcap", folder).exit_code, 0);
+  const CommandResult again = run_command("run run.mcap --again", folder);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.out,
+              ::testing::ContainsRegex("^[1-9][0-9]+ answers, [1-9][0-9]+ are the same to the bit when they are asked "
+                                       "again, 0 differ\n$"));
+  const CommandResult played = run_command("run run.mcap", folder);
+  EXPECT_EQ(played.exit_code, 0) << played.err;
+  EXPECT_THAT(played.err, HasSubstr("run.mcap: is played; of the cell's outputs none but the terminal"));
+  EXPECT_THAT(played.err, HasSubstr("left: at its end"));
+  EXPECT_EQ(run_command("run cell.yaml --again", folder).exit_code, 2);
+  edit(folder, "cell.yaml", "recording: .,", "recording: nowhere,");
+  EXPECT_EQ(run_command("run run.mcap --again", folder).exit_code, 0) << "the cell is the one that was recorded";
+}
+
+TEST(RunCommand, TopicsOfOthersAreNamedInTheCellFile) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  {
+    files::Recording recording(folder.path());
+    files::save_mcap(recording, folder / "wall.mcap");
+  }
+  (void)folder.write("cell.yaml", recorded_cell());
+  for (int camera = 0; camera < 2; ++camera) {
+    edit(folder, "cell.yaml", "recording: .,", "recording: wall.mcap,");
+  }
+  EXPECT_EQ(run_command("cell check cell.yaml", folder).exit_code, 0) << "found by the cameras' names";
+  edit(folder, "cell.yaml", "name: left, ",
+       "name: eye, topic: /left/depth/image_raw, camera_info: /left/depth/camera_info, pose: {position_m: [0, 0, 0], "
+       "quaternion_xyzw: [0, 0, 0, 1]}, ");
+  const CommandResult checked = run_command("cell check cell.yaml", folder);
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("eye: recording wall.mcap (eye), 64 x 48 pixels"));
+  edit(folder, "cell.yaml", "/left/depth/camera_info", "/other/camera_info");
+  EXPECT_THAT(run_command("cell check cell.yaml", folder).err,
+              HasSubstr("there is no /other/camera_info (camera_info topics: "));
+  edit(folder, "cell.yaml", "/left/depth/image_raw", "/other");
+  EXPECT_THAT(run_command("cell check cell.yaml", folder).err, HasSubstr("there is no topic '/other'; topics: "));
+  edit(folder, "cell.yaml", "recording: wall.mcap, ", "recording: ., ");
+  EXPECT_THAT(run_command("cell check cell.yaml", folder).err, HasSubstr("are of MCAP files, and . is none"));
 }
 
 TEST(RunCommand, CtrlCEndsItWithASummary) {
