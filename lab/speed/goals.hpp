@@ -39,10 +39,10 @@ struct AimedGoal {
   const char* workload = "";  ///< key
   const char* unit = "";
   double goal = 0;
-  double aim = 0;  ///< beyond the goal: where it is less, values are to be at most these, else at least
+  double aim = 0;  ///< beyond the goal: where it is more, values are to be at least these, else at most; the same: none
   double value = 0;
 
-  [[nodiscard]] bool reached(double bound) const { return aim < goal ? value <= bound : value >= bound; }
+  [[nodiscard]] bool reached(double bound) const { return aim <= goal ? value <= bound : value >= bound; }
 };
 
 /// Those set for the search that keeps its verdicts for a snapshot; two cameras.

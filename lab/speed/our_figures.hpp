@@ -27,6 +27,11 @@ struct OurPlan {
 void measure_ours(Stage& stage, const std::string& workload, const OurMargins& margins, const OurPlan& plan,
                   Report& report);
 
+/// Nine points with a smallest obstacle, a memory that begins with nothing known, and the time of each call, as a row
+/// of group "ours, <workload>"; images there go into the memory, too.
+void measure_remembered(Stage& stage, const std::string& workload, const OurMargins& margins, const OurPlan& plan,
+                        Report& report);
+
 /// Ours and `letter` in turns on the same points, as rows of group "beside the letter, <workload>".
 void measure_beside_letter(Stage& stage, const std::string& workload, const OurPlan& plan, Report& report);
 

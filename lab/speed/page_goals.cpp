@@ -68,12 +68,14 @@ std::string goals_text(const std::vector<AimedGoal>& all) {
   report::MarkdownTable table({"goal", "workload", "at most or at least", "aim", "measured", "reached"});
   for (const AimedGoal& goal : all) {
     const std::string bound =
-        (goal.aim < goal.goal ? "<= " : ">= ") + report::three_digits(goal.goal) + ' ' + goal.unit;
-    table.row({goal.what, goal.workload, bound, report::three_digits(goal.aim), report::three_digits(goal.value),
-               std::isnan(goal.value)     ? ""
-               : !goal.reached(goal.goal) ? "**missed**"
-               : !goal.reached(goal.aim)  ? "goal"
-                                          : "aim"});
+        (goal.aim <= goal.goal ? "<= " : ">= ") + report::three_digits(goal.goal) + ' ' + goal.unit;
+    const bool has_aim = goal.aim != goal.goal;
+    table.row({goal.what, goal.workload, bound, has_aim ? report::three_digits(goal.aim) : "-",
+               report::three_digits(goal.value),
+               std::isnan(goal.value)              ? ""
+               : !goal.reached(goal.goal)          ? "**missed**"
+               : has_aim && goal.reached(goal.aim) ? "aim"
+                                                   : "goal"});
   }
   const auto missed = std::count_if(all.begin(), all.end(), [](const AimedGoal& goal) {
     return !std::isnan(goal.value) && !goal.reached(goal.goal);

@@ -116,6 +116,7 @@ Report measure(const Plan& plan) {
       measure_ours(stage, name.key, margins, plan.ours, report);
       if (cameras == 2) {
         measure_budget_bounds(stage, name.key, margins, report);
+        measure_remembered(stage, name.key, margins, plan.ours, report);
       }
       if (&stage != &noisy) {
         measure_beside_letter(stage, name.key, plan.ours, report);
