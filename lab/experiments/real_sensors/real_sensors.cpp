@@ -28,9 +28,10 @@ struct SceneRow {
   Scene scene;
 };
 constexpr std::array kRows{SceneRow{"kinect_v1", 2, Scene::nobody},      SceneRow{"kinect_v1", 2, Scene::reach},
-                           SceneRow{"kinect_v1", 2, Scene::hand_behind}, SceneRow{"realsense_d435", 2, Scene::nobody},
-                           SceneRow{"realsense_d435", 3, Scene::nobody}, SceneRow{"realsense_d455", 2, Scene::nobody},
-                           SceneRow{"realsense_d455", 3, Scene::nobody}, SceneRow{"ideal", 2, Scene::reach}};
+                           SceneRow{"kinect_v1", 2, Scene::hand_behind}, SceneRow{"kinect_v1", 3, Scene::hand_behind},
+                           SceneRow{"realsense_d435", 2, Scene::nobody}, SceneRow{"realsense_d435", 3, Scene::nobody},
+                           SceneRow{"realsense_d455", 2, Scene::nobody}, SceneRow{"realsense_d455", 3, Scene::nobody},
+                           SceneRow{"ideal", 2, Scene::reach},           SceneRow{"ideal", 2, Scene::hand_behind}};
 constexpr std::array kBallGaps_m{0.02, 0.05, 0.10, 0.20};
 constexpr std::array kBallSensors{"kinect_v1", "realsense_d435"};
 constexpr int kBallSeen = 30;  ///< images at 30 Hz, then one that is asked
