@@ -16,6 +16,8 @@ void add_control_cycle_command(CLI::App& app);
 void add_worst_cases_command(CLI::App& app);
 void add_growth_command(CLI::App& app);
 void add_pictures_command(CLI::App& app);
+void add_devices_command(CLI::App& app);
+void add_day_command(CLI::App& app);
 void add_workcell_rate_command(CLI::App& workcell);
 void add_workcell_pictures_command(CLI::App& workcell);
 

@@ -36,5 +36,7 @@ int main(int argc, char** argv) {
   add_workcell_rate_command(*workcell);
   add_workcell_pictures_command(*workcell);
   add_pictures_command(app);
+  add_devices_command(app);
+  add_day_command(app);
   return depthgrid::program::run_command_line(app, argc, argv);
 }

@@ -103,7 +103,14 @@ Reading Ros2Camera::newest(DepthReading& reading) {
          printable_excerpt(image.header.frame_id), "': does a second driver publish there?");
   }
   reading.depth = messages::depth_view(image, pixels_);
-  reading.time_s = clock_time_s(image.header.stamp);
+  // The same stamp is the same time: read twice, the two clocks differ by microseconds, and an image that came twice
+  // would be a new one with the pixels of the one before.
+  const std::int64_t stamp_ns = messages::nanoseconds(image.header.stamp);
+  if (stamp_ns != stamp_ns_) {
+    stamp_ns_ = stamp_ns;
+    time_s_ = clock_time_s(image.header.stamp);
+  }
+  reading.time_s = time_s_;
   reading.T_world_camera.reset();
   reading.skipped = taken - 1;
   return Reading::got;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,8 +42,10 @@ class Ros2Camera final : public DepthSource {
   messages::DepthPixels pixels_;
   std::optional<PinholeCamera> intrinsics_;  ///< as they were told last
   std::optional<dds::Subscription> calibrations_;
-  std::string refused_;  ///< why the calibration that was told last is; empty: it is not
-  std::string frame_;    ///< of the first image
+  std::string refused_;        ///< why the calibration that was told last is; empty: it is not
+  std::string frame_;          ///< of the first image
+  std::int64_t stamp_ns_ = 0;  ///< of the image that was given last
+  double time_s_ = 0;          ///< the same on our clock
   SourceInfo info_;
   std::string reason_;
 };

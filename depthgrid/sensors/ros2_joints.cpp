@@ -58,7 +58,13 @@ Reading Ros2Joints::next(JointReading& reading, double longest_s) noexcept try {
   }
   incomplete_ = 0;
   reading.q = q_;
-  reading.time_s = clock_time_s(state.header.stamp);
+  // As for images: a state that comes twice has one time.
+  const std::int64_t stamp_ns = messages::nanoseconds(state.header.stamp);
+  if (stamp_ns != stamp_ns_) {
+    stamp_ns_ = stamp_ns;
+    time_s_ = clock_time_s(state.header.stamp);
+  }
+  reading.time_s = time_s_;
   return Reading::got;
 } catch (const std::exception& error) {
   reason_ = topic_ + ": " + error.what();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +37,9 @@ class Ros2Joints final : public JointSource {
   std::optional<dds::Subscription> states_;
   std::vector<std::byte> message_;
   std::vector<double> q_;
-  int incomplete_ = 0;  ///< messages in a row
+  int incomplete_ = 0;         ///< messages in a row
+  std::int64_t stamp_ns_ = 0;  ///< of the state that was given last
+  double time_s_ = 0;          ///< the same on our clock
   SourceInfo info_;
   std::string reason_;
 };

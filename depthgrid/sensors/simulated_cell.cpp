@@ -28,7 +28,7 @@ simulation::PersonStage stage_at_the_wrist() {
 }  // namespace
 
 SimulatedCell::SimulatedCell(const SimulatedCellSettings& settings)
-    : robot_(settings.robot), room_(simulation::empty_workcell()), begin_s_(clock_now_s()) {
+    : robot_(settings.robot), room_(simulation::empty_workcell()), begin_s_(settings.begin_s.value_or(clock_now_s())) {
   if (robot_) {
     capsules_ = robot::link_capsules(robot_->model);
     const auto& joints = robot_->model.joints();
@@ -51,7 +51,7 @@ void SimulatedCell::joints_at(double time_s, std::span<double> q) const noexcept
   }
 }
 
-simulation::Scene SimulatedCell::scene_at(double time_s) const {
+simulation::Workcell SimulatedCell::bodies_at(double time_s) const {
   simulation::Workcell cell = room_;
   if (robot_) {
     std::vector<double> q(centre_.size());
@@ -67,7 +67,9 @@ simulation::Scene SimulatedCell::scene_at(double time_s) const {
     const simulation::PersonState person = person_->at(at_s < way_s ? at_s : 2 * way_s - at_s);
     cell.bodies.push_back(simulation::capsule_body("person", BodyKind::person, person.parts_world));
   }
-  return simulation::scene_of(cell);
+  return cell;
 }
+
+simulation::Scene SimulatedCell::scene_at(double time_s) const { return simulation::scene_of(bodies_at(time_s)); }
 
 }  // namespace depthgrid::sensors

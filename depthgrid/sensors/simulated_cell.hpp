@@ -19,10 +19,11 @@ struct SimulatedCellSettings {
   std::optional<robot::PlacedRobot> robot{};
   bool person = true;  ///< walks in, stands beside the robot, leaves, and comes again
   std::uint64_t seed = 1;
+  std::optional<double> begin_s{};  ///< at which its time is 0: processes that share a clock show one cell; none: now
 };
 
 /// The room of simulation::empty_workcell(): the robot's base should stand at the world's origin.
-/// - Units: seconds since its construction, by clock_now_s(); metres, radians, world frame.
+/// - Units: seconds since begin_s(), by clock_now_s(); metres, radians, world frame.
 /// - Threads: const members from many at once.
 class SimulatedCell {
  public:
@@ -33,6 +34,8 @@ class SimulatedCell {
   void joints_at(double time_s, std::span<double> q) const noexcept;
   /// Everything at an instant, the arm as simulation::Body::robot.
   [[nodiscard]] simulation::Scene scene_at(double time_s) const;
+  /// The same as named bodies: what there is to be measured against.
+  [[nodiscard]] simulation::Workcell bodies_at(double time_s) const;
 
   /// The clock's time at which the cell's is 0.
   [[nodiscard]] double begin_s() const noexcept { return begin_s_; }

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -99,6 +100,33 @@ TEST_F(Ros2Source, CameraGivesTheNewestImageAndSaysWhatItPassedOver) {
   EXPECT_FLOAT_EQ(depth.at(3, 2), 1.5F);
   camera.close();
   EXPECT_EQ(camera.next(reading, 0.01), Reading::failed);
+}
+
+TEST_F(Ros2Source, WhatComesTwiceHasOneTime) {
+  dds::Publisher images = driver_.publish("/twice/image_raw", type_of<messages::Image>(), dds::kReliable);
+  dds::Publisher states = driver_.publish("/twice_states", type_of<messages::JointState>(), dds::kReliable);
+  Ros2Camera camera(node_, "/twice/image_raw");
+  Ros2Joints joints(node_, "/twice_states", {"a"});
+  camera.open();
+  joints.open();
+  const std::vector<std::uint16_t> pixels(12, 1500);
+  const messages::Image image = image_of(pixels, 4, clock_now_s() - 0.02);
+  messages::JointState state;
+  state.header.stamp = image.header.stamp;
+  state.name = {"a"};
+  state.position = {0.5};
+  std::set<double> times_s;
+  for (int n = 0; n < 20; ++n) {
+    send(images, image);
+    send(states, state);
+    DepthReading seen;
+    JointReading told;
+    ASSERT_TRUE(becomes([&] { return camera.next(seen, 0.1) == Reading::got; }));
+    ASSERT_TRUE(becomes([&] { return joints.next(told, 0.1) == Reading::got; }));
+    times_s.insert(seen.time_s);
+    times_s.insert(told.time_s);
+  }
+  EXPECT_LE(times_s.size(), 2U) << "one of the images, one of the joints: both clocks are read once a stamp";
 }
 
 TEST_F(Ros2Source, CameraTakesItsIntrinsicsFromTheTopicBesideIt) {
