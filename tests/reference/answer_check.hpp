@@ -40,6 +40,8 @@ class AnswerCheck {
   [[nodiscard]] std::optional<std::string> implausible(const Primitive& primitive, const Answer& answer) const;
   [[nodiscard]] std::optional<std::string> implausible_state(const Eigen::Vector3d& nearest_world,
                                                              const Answer& answer) const;
+  /// The camera frees the ball only because readings show the robot that do not, rounded as the search rounds.
+  [[nodiscard]] bool frees_by_a_tie(std::size_t k, const Eigen::Vector3d& w, double radius_m) const;
   [[nodiscard]] std::optional<std::string> not_tight(const Primitive& primitive, const Answer& answer) const;
 
   const SearchProblem* problem_;

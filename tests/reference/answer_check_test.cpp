@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "reference/search_problem_run.hpp"
@@ -194,6 +196,73 @@ TEST(AnswerCheck, SaysWhereItCouldNotDecide) {
     undecided += found.finding ? 1 : 0;
   });
   EXPECT_GT(undecided, 0);
+}
+
+/// One camera whose readings of 1 m, less their margin, are 0.99 m away, and a robot that begins somewhere there.
+struct BesideTheRobot {
+  static constexpr int kSize = 24;
+  std::vector<float> depth_m = std::vector<float>(kSize * kSize, 1.0F);
+  std::vector<float> near_m;
+  std::vector<float> far_m = std::vector<float>(kSize * kSize, 1.3F);
+  SearchProblem problem;
+
+  explicit BesideTheRobot(float robot_near_m) : near_m(kSize * kSize, robot_near_m) {
+    SensorMargin margin;
+    margin.constant_m = 0.01;
+    margin.lateral_px = 0;
+    RigCamera camera;
+    camera.id = "only";
+    camera.intrinsics = {kSize, kSize, 20, 20, 11.5, 11.5};
+    camera.rule.near_m = 0.2;
+    camera.rule.far_m = 5;
+    problem.rig.cameras = {camera};
+    CameraMargins margins;
+    margins.sensor = margin;
+    margins.smallest_obstacle_m = 0;
+    problem.settings.margins = {margins};
+    problem.settings.space = views::BoxSpace{{-0.4, -0.4, 0.3}, {0.4, 0.4, 1.6}};
+    problem.settings.policies = {.unobserved = views::Policy::ignored,
+                                 .outside = views::Policy::ignored,
+                                 .robot_pockets = views::Policy::obstacle};
+    problem.settings.rho_m = 0.5;
+    problem.settings.resolution_m = 0.005;
+    problem.settings.v_max_m_s = 0;
+    Frame frame;
+    frame.depth = depth_view(std::span<const float>(depth_m), kSize, kSize);
+    frame.time_s = 1;
+    frame.robot.near_m = near_m.data();
+    frame.robot.far_m = far_m.data();
+    frame.robot.stride_px = kSize;
+    problem.frames = {frame};
+    problem.problem.cameras = {{camera.intrinsics, camera.T_world_camera, camera.rule, frame, margin, PoseMargin{}}};
+    problem.problem.space = WorldBox{{-0.4, -0.4, 0.3}, {0.4, 0.4, 1.6}};
+    problem.problem.uncovered = Policy::ignored;
+    problem.problem.rho_m = 0.5;
+    problem.oracle = std::make_unique<Reference>(problem.problem);
+    problem.primitives = {Capsule::point({0, 0, 0.8})};
+  }
+};
+
+// The search says that something may stand in the sliver before the robot; in double precision there is none. Neither
+// is wrong, and the answer is the nearer.
+TEST(AnswerCheck, TakesATieOfRoundingsForTight) {
+  const BesideTheRobot tie(std::nextafter(0.99F, 0.0F));
+  const Answer answer = SearchRun(tie.problem).distances().front();
+  ASSERT_NEAR(answer.nearest.distance_m, 0.19, 0.006) << "the search takes the reading for the robot: no tie";
+  EXPECT_GT(tie.problem.oracle->distance(Vector3d(0, 0, 0.8)).lo_m, 0.3) << "the oracle does not: no tie";
+  const AnswerCheck check(tie.problem);
+  EXPECT_FALSE(check.form(tie.problem.primitives.front(), answer))
+      << check.form(tie.problem.primitives.front(), answer)->what;
+}
+
+TEST(AnswerCheck, TakesNothingButATieForOne) {
+  const BesideTheRobot tie(std::nextafter(0.99F, 0.0F));
+  const Answer answer = SearchRun(tie.problem).distances().front();
+  const BesideTheRobot clear(0.98999F);  // a hundredth of a millimetre: the reading shows the robot to whoever looks
+  const AnswerCheck check(clear.problem);
+  const auto finding = check.form(clear.problem.primitives.front(), answer);
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->fault, Fault::not_tight);
 }
 
 }  // namespace

@@ -88,12 +88,14 @@ CameraSpace::CameraSpace(const CameraInput& input)
         const SensorMargin& m = input.sensor;
         const double margin_m = m.constant_m + m.linear * depth_m + m.quadratic_per_m * depth_m * depth_m;
         const double front_m = depth_m - margin_m;
+        const double tie_m = input.tie_share * depth_m;
         // All that the reading may mean, from D - m to D, or some of it, from D - m to D + m.
         const bool within = input.frame.robot.within_margin;
         const bool shows_robot = pixel.robot_near_m > 0 &&
-                                 pixel.robot_near_m <= (within ? depth_m + margin_m : front_m) &&
+                                 pixel.robot_near_m <= (within ? depth_m + margin_m : front_m) - tie_m &&
                                  (within ? front_m : depth_m) <= pixel.robot_far_m;
-        reduced_m[index(u, v)] = std::max(0.0, shows_robot ? pixel.robot_far_m + input.robot_pocket_m : front_m);
+        reduced_m[index(u, v)] =
+            std::max(0.0, shows_robot ? pixel.robot_far_m + input.robot_pocket_m : front_m - tie_m);
         const bool nothing_else = within && shows_robot && measured_m[index(u, v)] > 0 && front_m > 0 &&
                                   depth_m + margin_m <= pixel.robot_far_m;
         beside_m[index(u, v)] = nothing_else ? kInfinity : reduced_m[index(u, v)];

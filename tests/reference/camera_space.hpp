@@ -28,6 +28,8 @@ struct CameraInput {
   PoseMargin pose;
   double robot_pocket_m = 0;       ///< a robot pixel frees this much beyond the robot's exit
   double smallest_obstacle_m = 0;  ///< s of hole_readings.hpp; 0: a pixel without reading frees nothing
+  /// Readings less their margin are lower by this share of the reading: one that shows the robot by less does not.
+  double tie_share = 0;
 };
 
 /// The part of the camera's own view that counts, when it is the principal camera: space outside it is of no interest.
