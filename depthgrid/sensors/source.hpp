@@ -27,6 +27,7 @@ struct SourceInfo {
   std::string clock;                          ///< whose time stamps: "this computer", "the device, less 2.1 ms"
   std::optional<PinholeCamera> intrinsics{};  ///< of the images that next() gives; none: not a camera, or not known
   double metres_per_unit = 0.001;             ///< of 16-bit images
+  std::string settings{};                     ///< what was set in the device, and what it did not take; empty: nothing
 };
 
 /// - Threads: one.

@@ -1,0 +1,135 @@
+// The depth stream of one RealSense device, or of a file that one recorded. Private.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "depthgrid/core/camera.hpp"
+#include "depthgrid/sensors/realsense_library.hpp"
+
+namespace depthgrid::sensors::rs2 {
+
+struct StreamRequest {
+  std::string serial{};  ///< empty: the only device
+  std::string file{};    ///< a recording in place of a device
+  int width_px = 640;
+  int height_px = 480;
+  int rate_hz = 30;
+  bool any_size = false;  ///< the first depth stream there is: of a recording
+};
+
+struct FoundDevice {
+  std::string name;
+  std::string serial;
+};
+
+/// The devices that are connected. Throws Error.
+[[nodiscard]] std::vector<FoundDevice> connected(const Library& library);
+
+/// Frames on their way from the library's thread to the source's. Either the newest one, or, for recordings, some in
+/// order: then the library's thread waits.
+class FrameBox {
+ public:
+  FrameBox(const Library& library, bool keeps_order) : library_(library), keeps_order_(keeps_order) {}
+  ~FrameBox() { close(); }
+  FrameBox(const FrameBox&) = delete;
+  FrameBox& operator=(const FrameBox&) = delete;
+
+  void put(Frame* frame) noexcept;  ///< takes the frame
+  [[nodiscard]] Frame* take(double longest_s);
+  void close() noexcept;  ///< frames that come from now on are given back at once
+
+ private:
+  static constexpr std::size_t kRoom = 8;
+  const Library& library_;
+  const bool keeps_order_;
+  std::mutex mutex_;
+  std::condition_variable has_frame_;
+  std::condition_variable has_room_;
+  std::deque<Frame*> frames_;
+  bool is_closed_ = false;
+};
+
+class Stream;
+
+/// The streams that want to hear of unplugged devices: the library may call while one of them ends, so it is given a
+/// number in place of a pointer.
+class Watch {
+ public:
+  Watch() = default;
+  ~Watch();
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+  /// What the library is to be given.
+  [[nodiscard]] void* begin(Stream& stream);
+  static void on_devices_changed(DeviceList* removed, DeviceList* added, void* number) noexcept;
+
+ private:
+  std::uintptr_t number_ = 0;
+};
+
+/// - Threads: one; the library's own put frames into the box.
+class Stream {
+ public:
+  /// Finds device, sensor and stream and sets up the device; does not start it. Throws Error.
+  Stream(std::shared_ptr<const Library> library, const StreamRequest& request);
+  ~Stream();
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const std::string& serial() const noexcept { return serial_; }
+  /// What was set in the device, as it says itself, and what it did not take: "preset 3, emitter 1; not set: ...".
+  [[nodiscard]] const std::string& settings() const noexcept { return settings_; }
+  [[nodiscard]] const PinholeCamera& intrinsics() const noexcept { return intrinsics_; }
+  [[nodiscard]] double metres_per_unit() const noexcept { return metres_per_unit_; }
+  [[nodiscard]] double duration_s() const;  ///< of a recording
+
+  /// Throws Error.
+  void start();
+  /// Null: none within that time.
+  [[nodiscard]] Owned<Frame> take(double longest_s);
+  /// The device was unplugged.
+  [[nodiscard]] bool is_gone() const noexcept { return is_gone_.load(std::memory_order_relaxed); }
+  /// The recording is at its end; frames may still be in the box.
+  [[nodiscard]] bool has_ended() const;
+
+ private:
+  [[nodiscard]] const Functions& f() const noexcept { return library_->functions(); }
+  [[nodiscard]] Owned<Device> device_of(const StreamRequest& request);
+  [[nodiscard]] Owned<Sensor> depth_sensor() const;
+  [[nodiscard]] const Profile* profile_of(const StreamRequest& request) const;
+  [[nodiscard]] std::string device_info(int what) const;
+  void set_up();
+  friend class Watch;
+  void look_whether_gone(DeviceList* removed) noexcept;
+  static void on_frame(Frame* frame, void* box) noexcept;
+
+  std::shared_ptr<const Library> library_;
+  bool is_recording_;
+  std::atomic<bool> is_gone_{false};
+  Owned<Context> context_;
+  Owned<Device> device_;
+  Owned<Sensor> sensor_;
+  Owned<ProfileList> profiles_;
+  const Profile* profile_ = nullptr;
+  FrameBox box_;
+  Watch watch_;  ///< ends first
+  bool is_open_ = false;
+  bool is_started_ = false;
+  std::string name_;
+  std::string serial_;
+  std::string settings_;
+  PinholeCamera intrinsics_;
+  double metres_per_unit_ = 0.001;
+};
+
+}  // namespace depthgrid::sensors::rs2
