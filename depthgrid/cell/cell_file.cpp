@@ -20,11 +20,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 12> kCellKeys{
     "name",   "cameras", "robot", "space", "policies", "v_max_m_s", "smallest_obstacle_m",
     "memory", "ask",     "ages",  "ros2",  "outputs"};
-constexpr std::array<std::string_view, 16> kCameraKeys{
-    "camera_info", "name",   "source", "recording", "recorded_as",
-    "repeat",      "serial", "topic",  "rate_hz",   "rig",
-    "intrinsics",  "pose",   "sensor", "margins",   "smallest_obstacle_m",
-    "equal_images"};
+constexpr std::array<std::string_view, 17> kCameraKeys{
+    "camera_info", "name",   "source",  "recording",           "recorded_as", "repeat",
+    "serial",      "topic",  "rate_hz", "arrival_lag_s",       "rig",         "intrinsics",
+    "pose",        "sensor", "margins", "smallest_obstacle_m", "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<std::string_view, 5> kPoseKeys{"position_m", "look_at_m", "up", "rpy_deg", "quaternion_xyzw"};
 constexpr std::array<std::string_view, 9> kMarginKeys{
@@ -142,11 +141,40 @@ void refuse_foreign(const Section& section, SourceKind kind, std::span<const std
   }
 }
 
+/// A camera with a driver of its own, or what was recorded with it.
+void read_device(const Section& section, const std::filesystem::path& folder, CameraEntry& camera) {
+  refuse_foreign(section, camera.source, std::array<std::string_view, 3>{"camera_info", "topic", "recorded_as"});
+  if (camera.source != SourceKind::realsense) {
+    refuse_foreign(section, camera.source, std::array<std::string_view, 1>{"rate_hz"});
+  }
+  if (camera.source == SourceKind::freenect) {
+    refuse_foreign(section, camera.source, std::array<std::string_view, 1>{"recording"});
+  }
+  if (section.has("recording")) {
+    for (const std::string_view key : {"serial", "rate_hz", "arrival_lag_s"}) {
+      if (section.has(key)) {
+        section.refuse(key, "says nothing of a recording, remove it");
+      }
+    }
+    camera.recording = folder / section.text("recording", "a file of its maker's software: .bag, .oni");
+    camera.repeat = section.yes("repeat", false);
+    return;
+  }
+  if (section.has("repeat")) {
+    section.refuse("repeat", "says nothing of a camera that is there, remove it, or add recording:");
+  }
+  camera.device = section.text("serial", "the serial number on the camera: it says which of several it is", "");
+  if (camera.source == SourceKind::realsense) {
+    camera.rate_hz = section.number("rate_hz", {0, 1000, true}, "Hz", "images a second", 30);
+  }
+  camera.arrival_lag_s = section.number_if("arrival_lag_s", {0, 1}, "s");
+}
+
 void read_source(const Section& section, const std::filesystem::path& folder, CameraEntry& camera) {
   camera.source = kind_of(section.word("source", kSources, "where the images come from: recording, simulated, ..."));
   switch (camera.source) {
     case SourceKind::recording:
-      refuse_foreign(section, camera.source, std::array<std::string_view, 2>{"serial", "rate_hz"});
+      refuse_foreign(section, camera.source, std::array<std::string_view, 3>{"serial", "rate_hz", "arrival_lag_s"});
       camera.recording = folder / section.text("recording", "the folder that holds a rig.json, or an MCAP file");
       camera.device = section.text("topic", "of the depth images in an MCAP file", "");
       camera.info_topic = section.text("camera_info", "of their calibration in an MCAP file", "");
@@ -154,22 +182,19 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
       camera.repeat = section.yes("repeat", false);
       break;
     case SourceKind::simulated:
-      refuse_foreign(
-          section, camera.source,
-          std::array<std::string_view, 6>{"camera_info", "serial", "topic", "recording", "recorded_as", "repeat"});
+      refuse_foreign(section, camera.source,
+                     std::array<std::string_view, 7>{"camera_info", "serial", "topic", "recording", "recorded_as",
+                                                     "repeat", "arrival_lag_s"});
       camera.rate_hz = section.number("rate_hz", {0, 1000, true}, "Hz", "images a second", 30);
       break;
     case SourceKind::ros2:
-      refuse_foreign(
-          section, camera.source,
-          std::array<std::string_view, 6>{"camera_info", "serial", "recording", "recorded_as", "repeat", "rate_hz"});
+      refuse_foreign(section, camera.source,
+                     std::array<std::string_view, 7>{"camera_info", "serial", "recording", "recorded_as", "repeat",
+                                                     "rate_hz", "arrival_lag_s"});
       camera.device = section.text("topic", "of the depth images, for instance /left/depth/image_rect_raw");
       break;
     default:
-      refuse_foreign(
-          section, camera.source,
-          std::array<std::string_view, 6>{"camera_info", "topic", "recording", "recorded_as", "repeat", "rate_hz"});
-      camera.device = section.text("serial", "the serial number on the camera: it says which of several it is");
+      read_device(section, folder, camera);
   }
 }
 

@@ -107,7 +107,8 @@ RigCamera camera_of(const CameraEntry& entry, std::size_t index, std::vector<Sho
   camera.T_world_camera = entry.T_world_camera.value_or(camera.T_world_camera);
   if (camera.intrinsics.width_px == 0) {
     fail(entry.place,
-         ": nothing says the camera's intrinsics before it is opened: intrinsics: {width_px, ...}, or rig:");
+         ": nothing says the camera's intrinsics before it is opened: intrinsics: {width_px, ...}, or rig:; depthgrid "
+         "cell new writes those of the cameras that it finds");
   }
   if (!entry.sensor.empty()) {
     camera.sensor = sensor_model(entry.sensor).name;

@@ -87,7 +87,7 @@ bool CameraLine::open() noexcept {
     count(counters_.opened);
     check_.begin_anew();
     set_state(CameraState::waiting, "");
-    tell(EventKind::source_open, info.name);
+    tell(EventKind::source_open, info.settings.empty() ? info.name : info.name + "; " + info.settings);
     return true;
   } catch (const std::exception& error) {
     count(counters_.failures);

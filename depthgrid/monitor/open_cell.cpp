@@ -9,6 +9,7 @@
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/whole_file.hpp"
+#include "depthgrid/monitor/device_camera.hpp"
 #include "depthgrid/monitor/ros2_output.hpp"
 #include "depthgrid/network/datagram_writer.hpp"
 #include "depthgrid/network/udp_sender.hpp"
@@ -41,8 +42,8 @@ std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
     }
   };
   for (const cell::CameraEntry& camera : cell.cameras) {
-    if (camera.source == SourceKind::recording) {
-      const sensors::RecordedSpan span = sensors::recorded_span(camera.recording, cell::recording_options(camera));
+    if (!camera.recording.empty()) {
+      const sensors::RecordedSpan span = span_of(camera, cell);
       first_s = std::min(first_s, span.first_s);
       last_s = std::max(last_s, span.last_s);
       repeat_all(camera.repeat, camera.place);
@@ -124,8 +125,8 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const
         sources.cameras.push_back(std::make_unique<sensors::Ros2Camera>(ros2, camera.device));
         break;
       default:
-        fail(camera.place, ": source: ", to_string(camera.source),
-             " is not part of this build: recording, simulated, ros2");
+        sources.cameras.push_back(device_camera(camera, setup.rig.cameras[k], playback));
+        break;
     }
   }
   if (cell.robot) {

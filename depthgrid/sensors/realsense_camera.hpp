@@ -27,9 +27,9 @@ struct RealSenseSettings {
   std::optional<double> longest_exposure_s{};
 };
 
-/// Sets the preset of high accuracy (D400), the emitter on and alternating modes off, and asks for global time; what the
-/// device then says, and what it did not take, is in info().settings. Images are 16-bit depth as the device computes
-/// it, in its own unit; no filter is applied. Times are the middle of the exposure:
+/// Sets the preset of high accuracy (D400), the emitter on and alternating modes off, and asks for global time; what
+/// the device then says, and what it did not take, is in info().settings. Images are 16-bit depth as the device
+/// computes it, in its own unit; no filter is applied. Times are the middle of the exposure:
 ///
 /// | the stamp is of          | what is done |
 /// | ------------------------ | ------------ |

@@ -1,7 +1,7 @@
 // The functions of librealsense2 that are used, found when it is loaded. Private.
 //
-// Names, numbers and order of arguments are those of its C interface, 2.13 to 2.58; numbers that a version does not know
-// are answered by it with "not supported".
+// Names, numbers and order of arguments are those of its C interface, 2.13 to 2.58; numbers that a version does not
+// know are answered by it with "not supported".
 #pragma once
 
 #include <memory>

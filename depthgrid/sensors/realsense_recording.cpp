@@ -59,8 +59,9 @@ RealSenseSpan realsense_span(const std::filesystem::path& file, std::shared_ptr<
   RealSenseSpan span;
   span.first_s = exposed_s(*library, first.get());
   span.last_s = span.first_s + stream->duration_s();
-  span.has_own_clock = library->call(library->functions().get_frame_timestamp_domain,
-                                     static_cast<const rs2::Frame*>(first.get())) == static_cast<int>(rs2::kHardwareClock);
+  span.has_own_clock =
+      library->call(library->functions().get_frame_timestamp_domain, static_cast<const rs2::Frame*>(first.get())) ==
+      static_cast<int>(rs2::kHardwareClock);
   span.info = info_of(*stream, file);
   return span;
 }
@@ -151,8 +152,8 @@ Reading RealSenseRecording::next(DepthReading& reading, double longest_s) noexce
   }
   const rs2::Frame* const frame = frames_->given.get();
   has_given_ = true;
-  reading.depth = rs2::depth_of(*library_, frame, info_.intrinsics->width_px, info_.intrinsics->height_px,
-                                info_.metres_per_unit);
+  reading.depth =
+      rs2::depth_of(*library_, frame, info_.intrinsics->width_px, info_.intrinsics->height_px, info_.metres_per_unit);
   reading.time_s = due_s(frame);
   reading.T_world_camera.reset();
   return Reading::got;

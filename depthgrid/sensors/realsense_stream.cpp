@@ -91,7 +91,8 @@ void FrameBox::put(Frame* frame) noexcept {
 
 Frame* FrameBox::take(double longest_s) {
   std::unique_lock lock(mutex_);
-  has_frame_.wait_for(lock, std::chrono::duration<double>(std::max(longest_s, 0.0)), [this] { return !frames_.empty(); });
+  has_frame_.wait_for(lock, std::chrono::duration<double>(std::max(longest_s, 0.0)),
+                      [this] { return !frames_.empty(); });
   if (frames_.empty()) {
     return nullptr;
   }
@@ -125,8 +126,8 @@ Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& requ
   if (is_recording_) {
     library_->call(f().playback_set_real_time, static_cast<const Device*>(device_.get()), 0);
   } else {
-    library_->call(f().set_devices_changed_callback, static_cast<const Context*>(context_.get()), &Watch::on_devices_changed,
-                   watch_.begin(*this));
+    library_->call(f().set_devices_changed_callback, static_cast<const Context*>(context_.get()),
+                   &Watch::on_devices_changed, watch_.begin(*this));
     set_up();
   }
   Intrinsics told;

@@ -50,6 +50,21 @@ void show(const std::string& file) {
   show_table(values);
 }
 
+/// What the device says of itself, as the file states it.
+void show_device(const sensors::SourceInfo& info) {
+  if (info.intrinsics) {
+    const Eigen::Vector2d centre = principal_point_opencv(*info.intrinsics);
+    say("    intrinsics: {width_px: " + std::to_string(info.intrinsics->width_px) + ", height_px: " +
+        std::to_string(info.intrinsics->height_px) + ", fx_px: " + report::fixed(info.intrinsics->fx_px, 3) +
+        ", fy_px: " + report::fixed(info.intrinsics->fy_px, 3) + ", cx_px: " + report::fixed(centre.x(), 3) +
+        ", cy_px: " + report::fixed(centre.y(), 3) + "}, " + report::fixed(1e3 * info.metres_per_unit, 3) +
+        " mm a unit");
+  }
+  if (!info.settings.empty()) {
+    say("    " + info.settings);
+  }
+}
+
 /// One image. Throws Error where there is none.
 void look_at(const std::string& name, sensors::DepthSource& source, const RigCamera& camera) {
   source.open();
@@ -81,6 +96,7 @@ void look_at(const std::string& name, sensors::DepthSource& source, const RigCam
     line += ", " + report::percent(1 - static_cast<double>(none) / static_cast<double>(pixels)) +
             " of its pixels have a reading";
     say(line);
+    show_device(info);
     source.close();
     return;
   }

@@ -80,20 +80,6 @@ TEST(CellCommand, NewWritesOneAndNothingOver) {
   EXPECT_THAT(run_command("cell new nowhere/cell.yaml", folder).err, HasSubstr("is its folder there?"));
 }
 
-TEST(CellCommand, ASourceThatIsNotBuiltInIsTold) {
-  const TemporaryFolder folder;
-  ASSERT_EQ(run_command("cell new cell.yaml", folder).exit_code, 0);
-  edit(folder, "cell.yaml", "urdf: panda.urdf", "urdf: kuka_lwr4");
-  edit(folder, "cell.yaml", "tool: panda_hand", "tool: lwr_7_link");
-  edit(folder, "cell.yaml", "source: ros2 ", "source: realsense ");
-  edit(folder, "cell.yaml", "topic: /left/depth/image_rect_raw", "serial: \"7\"");
-  const CommandResult result = run_command("run cell.yaml --seconds 1", folder);
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(
-      result.err,
-      HasSubstr("cell.yaml:13:5: cameras[0]: source: realsense is not part of this build: recording, simulated, ros2"));
-}
-
 TEST(RunCommand, AnswersARecordingAndSumsUp) {
   const TemporaryFolder folder;
   write_wall(folder);

@@ -17,10 +17,10 @@
 
 namespace {
 
+using depthgrid::sensors::rs2::Intrinsics;
+using depthgrid::test::fake_pixel;
 using depthgrid::test::FakeCounts;
 using depthgrid::test::FakeRealSense;
-using depthgrid::test::fake_pixel;
-using depthgrid::sensors::rs2::Intrinsics;
 
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
@@ -67,7 +67,7 @@ std::atomic<bool> silent_now{false};
 FakeCounts counts;
 std::vector<FakeContext*> contexts;
 
-void count(int FakeCounts::* what, int by) {
+void count(int FakeCounts::*what, int by) {
   const std::scoped_lock lock(mutex);
   counts.*what += by;
 }

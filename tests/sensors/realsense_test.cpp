@@ -79,7 +79,7 @@ std::uint16_t pixel(const DepthView& depth, int x, int y) {
 }
 
 /// The number of the fake's frame that this is, none: another image.
-long number_of(const DepthView& depth) {  // NOLINT(*runtime-int)
+long number_of(const DepthView& depth) {            // NOLINT(*runtime-int)
   for (long number = 0; number < 2000; ++number) {  // NOLINT(*runtime-int)
     if (test::fake_pixel(number, 0, 0) == pixel(depth, 0, 0)) {
       for (int y = 0; y < depth.height_px; ++y) {
@@ -168,10 +168,12 @@ TEST_F(RealSense, WhichOneItIsHasToBeKnown) {
   is([](FakeRealSense& fake) { fake.serials.clear(); });
   EXPECT_EQ(refused(""), "no RealSense is connected");
   is([](FakeRealSense& fake) { fake.serials = {"111", "222"}; });
-  EXPECT_EQ(refused(""),
-            "2 RealSense are connected, serial: says which one: 111 (Intel RealSense D435), 222 (Intel RealSense D435)");
-  EXPECT_EQ(refused("333"), "no RealSense with serial number 333 is connected, there are 111 (Intel RealSense D435), "
-                            "222 (Intel RealSense D435)");
+  EXPECT_EQ(
+      refused(""),
+      "2 RealSense are connected, serial: says which one: 111 (Intel RealSense D435), 222 (Intel RealSense D435)");
+  EXPECT_EQ(refused("333"),
+            "no RealSense with serial number 333 is connected, there are 111 (Intel RealSense D435), "
+            "222 (Intel RealSense D435)");
   EXPECT_EQ(refused("222"), "");
   RealSenseSettings settings;
   settings.serial = "222";
@@ -306,7 +308,8 @@ TEST_F(RealSense, TheDevicesOwnClockIsFollowedByTheArrivals) {
     const auto source = camera();
     source->open();
     ASSERT_EQ(next(*source, reading), Reading::failed);
-    EXPECT_THAT(std::string(source->reason()), HasSubstr("the device's clock is known here by the images' arrival alone"));
+    EXPECT_THAT(std::string(source->reason()),
+                HasSubstr("the device's clock is known here by the images' arrival alone"));
   }
   RealSenseSettings settings;
   settings.arrival.lag_s = 0.03;
