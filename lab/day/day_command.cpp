@@ -14,6 +14,7 @@
 #include "lab/commands.hpp"
 #include "lab/day/day_cell.hpp"
 #include "lab/day/day_check.hpp"
+#include "lab/day/received_images.hpp"
 #include "report/machine.hpp"
 #include "report/number_text.hpp"
 
@@ -26,6 +27,7 @@ struct PlanOptions {
   std::uint64_t seed = 1;
   double begin_in_s = 3;
   bool no_faults = false;
+  double image_rate_hz = 15;
   DayCell cell;
 };
 
@@ -41,6 +43,7 @@ void plan_day(const PlanOptions& options) {
   DayPlan plan;
   plan.begin_s = sensors::clock_now_s() + options.begin_in_s;
   plan.seconds = options.seconds;
+  plan.image_rate_hz = options.image_rate_hz;
   if (!options.no_faults) {
     plan.faults = random_faults(cameras, options.seconds, options.seed);
   }
@@ -103,6 +106,36 @@ void check_day_in(const CheckOptions& options) {
   }
 }
 
+struct ImagesOptions {
+  std::string answers;
+  double leave_out_s = 3;
+  double least_hz = 0;
+};
+
+void count_images(const ImagesOptions& options) {
+  std::ifstream answers(options.answers);
+  if (!answers) {
+    fail(options.answers, ": cannot be read");
+  }
+  const Received received = received_images(answers, options.leave_out_s);
+  std::printf("%s s, %zu answers, %s of them stop\n", report::fixed(received.seconds, 1).c_str(), received.answers,
+              report::percent_of(static_cast<double>(received.stopped), static_cast<double>(received.answers)).c_str());
+  std::printf(
+      "| camera | images a second | old ms when first asked: median | 99.9 %% | longest without ms | answers late |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const ReceivedImages& camera : received.cameras) {
+    const double rate_hz = static_cast<double>(camera.images) / received.seconds;
+    std::printf("| %s | %s | %s | %s | %s | %s |\n", camera.camera.c_str(), report::fixed(rate_hz, 1).c_str(),
+                report::fixed(1e3 * camera.age_s.median(), 1).c_str(),
+                report::fixed(1e3 * camera.age_s.quantile(0.999), 1).c_str(),
+                report::fixed(1e3 * camera.between_s.largest(), 0).c_str(), report::percent(camera.late_share).c_str());
+    if (!(rate_hz >= options.least_hz)) {
+      fail("of ", camera.camera, " ", report::fixed(rate_hz, 2), " images a second were used, must be at least ",
+           options.least_hz);
+    }
+  }
+}
+
 }  // namespace
 
 void add_day_command(CLI::App& app) {
@@ -116,6 +149,9 @@ void add_day_command(CLI::App& app) {
   plan_command->add_option("--seed", plan->seed, "of the faults")->capture_default_str();
   plan_command->add_option("--begin-in", plan->begin_in_s, "seconds from now until the cell's time is 0")
       ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  plan_command->add_option("--rate", plan->image_rate_hz, "images a second")
+      ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   plan_command->add_flag("--no-faults", plan->no_faults, "nothing fails");
   plan_command->add_option("--cameras", plan->cell.cameras)->check(CLI::Range(1, 8))->capture_default_str();
@@ -138,6 +174,17 @@ void add_day_command(CLI::App& app) {
   check_command->add_option("--truth-every", check->truth_every, "every so many answers are held against the truth")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  const auto images = std::make_shared<ImagesOptions>();
+  CLI::App* const images_command = day->add_subcommand(
+      "images", "how many images of each camera the JSON lines of a run stand on, and how old they were");
+  images_command->add_option("ANSWERS", images->answers)->required();
+  images_command->add_option("--leave-out", images->leave_out_s, "seconds at the beginning")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  images_command->add_option("--least", images->least_hz, "images a second of each camera; fewer end with 1")
+      ->check(CLI::Range(0.0, 1e4))
+      ->capture_default_str();
+  images_command->callback([images] { count_images(*images); });
   check_command->callback([check] { check_day_in(*check); });
 }
 
