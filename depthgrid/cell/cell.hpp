@@ -54,7 +54,9 @@ struct CameraEntry {
   std::optional<double> arrival_lag_s{};      ///< from the exposure to the arrival, at least: of stamps of the arrival
   std::filesystem::path rig_file{};           ///< says intrinsics and pose of the camera of this name
   std::optional<PinholeCamera> intrinsics{};  ///< none: from the rig file, or from the device
-  std::optional<Pose> T_world_camera{};       ///< none: from the rig file
+  std::optional<Pose> T_world_camera{};       ///< none: from the rig file, or of `frame`
+  std::string frame{};                        ///< of /tf and /tf_static: where a topic's images are taken
+  double frame_age_s = 0.1;                   ///< how old a transform of it may be
   std::string sensor{};                       ///< a sensor model; empty: the rig file's, or none
   MarginEntry margins{};                      ///< in place of the model's
   double smallest_obstacle_m = 0;             ///< declared
@@ -96,9 +98,10 @@ struct AskEntry {
   double rate_hz = 500;
   double rho_m = kDefaultRho;
   double resolution_m = 0.005;
-  double stop_m = 0;                 ///< a part that is not farther than this, beyond its blind layer, says stop
-  bool moving_links = false;         ///< every link that at least two joints move
-  std::vector<std::string> links{};  ///< or these
+  double stop_m = 0;                   ///< a part that is not farther than this, beyond its blind layer, says stop
+  std::optional<double> stopping_s{};  ///< what the robot takes to stand still, for the log
+  bool moving_links = false;           ///< every link that at least two joints move
+  std::vector<std::string> links{};    ///< or these
   std::vector<PointEntry> points{};
 };
 
@@ -124,6 +127,8 @@ struct OutputEntry {
   std::optional<UdpEntry> udp{};
   std::filesystem::path jsonl{};   ///< empty: none
   std::filesystem::path record{};  ///< an MCAP file that is made; empty: none. "{time}" in its name is the time of day
+  std::filesystem::path log{};     ///< a line for each stop and go is added to it; empty: none
+  std::filesystem::path prometheus{};  ///< is replaced once a second; empty: none
   bool terminal = true;
   bool ros2 = false;  ///< topics of the node
 };

@@ -25,7 +25,9 @@ constexpr std::array<std::string_view, 17> kCameraKeys{
     "serial",      "topic",  "rate_hz", "arrival_lag_s",       "rig",         "intrinsics",
     "pose",        "sensor", "margins", "smallest_obstacle_m", "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
-constexpr std::array<std::string_view, 5> kPoseKeys{"position_m", "look_at_m", "up", "rpy_deg", "quaternion_xyzw"};
+constexpr std::array<std::string_view, 7> kPoseKeys{"position_m",      "look_at_m", "up",       "rpy_deg",
+                                                    "quaternion_xyzw", "frame",     "max_age_s"};
+constexpr std::array<std::string_view, 2> kFrameKeys{"frame", "max_age_s"};
 constexpr std::array<std::string_view, 9> kMarginKeys{
     "constant_m",   "linear",          "quadratic_per_m",    "lateral_px",     "translation_m",
     "rotation_deg", "half_exposure_s", "time_uncertainty_s", "second_view_x_m"};
@@ -35,10 +37,12 @@ constexpr std::array<std::string_view, 6> kJointsKeys{"source", "file", "topic",
 constexpr std::array<std::string_view, 2> kSpaceKeys{"low_m", "high_m"};
 constexpr std::array<std::string_view, 4> kPolicyKeys{"unobserved", "outside", "robot_pockets", "ignored_pocket_m"};
 constexpr std::array<std::string_view, 3> kMemoryKeys{"start", "voxel_m", "thinnest_hidden_m"};
-constexpr std::array<std::string_view, 6> kAskKeys{"rate_hz", "rho_m", "resolution_m", "stop_m", "links", "points"};
+constexpr std::array<std::string_view, 7> kAskKeys{"rate_hz",    "rho_m", "resolution_m", "stop_m",
+                                                   "stopping_s", "links", "points"};
 constexpr std::array<std::string_view, 3> kPointKeys{"name", "at_m", "radius_m"};
 constexpr std::array<std::string_view, 2> kAgeKeys{"image_s", "joints_s"};
-constexpr std::array<std::string_view, 5> kOutputKeys{"udp", "jsonl", "record", "terminal", "ros2"};
+constexpr std::array<std::string_view, 7> kOutputKeys{"udp",        "jsonl",    "record", "log",
+                                                      "prometheus", "terminal", "ros2"};
 constexpr std::array<std::string_view, 4> kRos2Keys{"node", "namespace", "domain", "frame"};
 constexpr std::array<std::string_view, 2> kUdpKeys{"host", "port"};
 
@@ -198,6 +202,26 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
   }
 }
 
+void read_pose(const Section& pose, CameraEntry& camera) {
+  if (!pose.has("frame")) {
+    if (pose.has("max_age_s")) {
+      pose.refuse("max_age_s", "belongs to frame, remove it");
+    }
+    camera.T_world_camera = pose_of(pose, true);
+    return;
+  }
+  if (camera.source != SourceKind::ros2) {
+    pose.refuse("frame", "is looked up on /tf, which only source: ros2 has: position_m and look_at_m");
+  }
+  for (const std::string_view key : kPoseKeys) {
+    if (std::find(kFrameKeys.begin(), kFrameKeys.end(), key) == kFrameKeys.end() && pose.has(key)) {
+      pose.refuse(key, "says nothing beside frame, which is looked up on /tf: remove one of them");
+    }
+  }
+  camera.frame = pose.text("frame", "the depth imager's optical frame");
+  camera.frame_age_s = pose.number("max_age_s", {0, 10, true}, "s", "how old a transform of /tf may be", 0.1);
+}
+
 void read_calibration(const Section& section, const std::filesystem::path& folder, CameraEntry& camera) {
   if (section.has("rig")) {
     camera.rig_file = folder / section.text("rig", "");
@@ -206,10 +230,10 @@ void read_calibration(const Section& section, const std::filesystem::path& folde
     camera.intrinsics = intrinsics_of(section.map("intrinsics", kIntrinsicsKeys, ""));
   }
   if (section.has("pose")) {
-    camera.T_world_camera = pose_of(section.map("pose", kPoseKeys, kPoseHint), true);
+    read_pose(section.map("pose", kPoseKeys, kPoseHint), camera);
   }
   const bool in_rig = camera.source == SourceKind::recording || !camera.rig_file.empty();
-  if (!in_rig && !camera.T_world_camera) {
+  if (!in_rig && !camera.T_world_camera && camera.frame.empty()) {
     section.refuse("", "'pose' is missing: ", kPoseHint, ", or rig: with a rig file that states it");
   }
   if (!in_rig && !camera.intrinsics && camera.source == SourceKind::simulated) {
@@ -350,6 +374,7 @@ AskEntry ask_of(const Section& section, bool has_robot) {
   ask.resolution_m = section.number("resolution_m", {0.0005, 1}, "m", "tightness", ask.resolution_m);
   ask.stop_m = section.number("stop_m", {0, ask.rho_m}, "m",
                               "a part that is not farther than this beyond its blind layer says stop", ask.stop_m);
+  ask.stopping_s = section.number_if("stopping_s", {0, 10}, "s");
   if (section.is_list("links")) {
     ask.links = section.texts("links", "names of links");
   } else if (section.has("links")) {
@@ -384,6 +409,12 @@ OutputEntry outputs_of(const Section& section, const std::filesystem::path& fold
   }
   if (section.has("record")) {
     outputs.record = folder / section.text("record", "an MCAP file to be made: run-{time}.mcap");
+  }
+  if (section.has("log")) {
+    outputs.log = folder / section.text("log", "a file that gets a line for each stop and go");
+  }
+  if (section.has("prometheus")) {
+    outputs.prometheus = folder / section.text("prometheus", "a file that is replaced once a second: cell.prom");
   }
   outputs.terminal = section.yes("terminal", true);
   outputs.ros2 = section.yes("ros2", false);

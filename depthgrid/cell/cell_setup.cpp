@@ -241,6 +241,9 @@ std::vector<std::string> implausible(const Cell& cell, const CellSetup& setup) {
     }
     const Eigen::Vector3d middle = 0.5 * (cell.space.low_world + cell.space.high_world);
     const DepthPoint seen = project(camera.intrinsics, camera.T_world_camera.inverse(Eigen::Isometry) * middle);
+    if (!entry.frame.empty()) {
+      continue;  // nobody knows yet where it stands
+    }
     if (!(seen.depth_m > 0) ||
         !camera.intrinsics.contains(static_cast<int>(std::floor(std::clamp(seen.x_px, -1e6, 1e6))),
                                     static_cast<int>(std::floor(std::clamp(seen.y_px, -1e6, 1e6))))) {
@@ -254,6 +257,11 @@ std::vector<std::string> implausible(const Cell& cell, const CellSetup& setup) {
             "' may err at the robot, ", margin_m, " m: the robot may be its own obstacle; see margin_in_test");
       }
     }
+  }
+  const double stopping_m = cell.v_max_m_s * cell.ask.stopping_s.value_or(0);
+  if (cell.ask.stop_m < stopping_m) {
+    say(cell.file.string(), ": ask.stop_m: ", cell.ask.stop_m, " m is less than what moves while the robot stops, ",
+        stopping_m, " m");
   }
   const double ages_m = cell.v_max_m_s * cell.ages.image_s;
   if (ages_m > cell.ask.rho_m) {

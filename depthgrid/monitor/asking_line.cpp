@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "depthgrid/core/blind_layer.hpp"
 #include "depthgrid/sensors/clock.hpp"
@@ -42,6 +43,8 @@ AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::Sear
       cameras_(cameras) {
   answer_.parts.resize(setup.parts.size());
   answer_.parts_world.resize(setup.parts.size());
+  newer_.parts_world.resize(setup.parts.size());
+  older_.parts_world.resize(setup.parts.size());
   answer_.camera_count = cameras_.size();
   answer_.reason.stop_m = stop_m;
   answer_.reason.v_max_m_s = setup.settings.v_max_m_s;
@@ -56,6 +59,27 @@ bool AskingLine::place_parts(double now_s) noexcept {
     answer_.joints_age_s = now_s - answer_.joints_s;
   }
   return places_.find(now_s, history_, known, answer_.parts_world);
+}
+
+void AskingLine::remember_parts(bool placed) noexcept {
+  constexpr double kApart_s = 0.1;
+  if (answer_.time_s - newer_.time_s < kApart_s) {
+    return;
+  }
+  std::swap(newer_, older_);
+  newer_.time_s = placed ? answer_.time_s : Proximity::kNaN;
+  std::copy(answer_.parts_world.begin(), answer_.parts_world.end(), newer_.parts_world.begin());
+}
+
+double AskingLine::speed_m_s(std::size_t part) const noexcept {
+  constexpr double kLongest_s = 0.5;
+  const double apart_s = answer_.time_s - older_.time_s;
+  if (!(apart_s > 0 && apart_s <= kLongest_s)) {
+    return Proximity::kNaN;
+  }
+  const Capsule& now = answer_.parts_world[part];
+  const Capsule& before = older_.parts_world[part];
+  return std::max((now.a - before.a).norm(), (now.b - before.b).norm()) / apart_s;
 }
 
 void AskingLine::look_at_cameras() noexcept {
@@ -115,7 +139,10 @@ void AskingLine::find_reason(bool placed) noexcept {
       reason.part = i;
     }
   }
-  const Answer& worst = answer_.parts[reason.part.value_or(0)];
+  const std::size_t part = reason.part.value_or(0);
+  const Answer& worst = answer_.parts[part];
+  reason.part_motion_m = places_.motion_m(part);
+  reason.part_speed_m_s = placed ? speed_m_s(part) : Proximity::kNaN;
   answer_.distance_m = has_unknown ? Proximity::kNaN : least_m;
   answer_.clear_m = has_unknown ? Proximity::kNaN : least_room_m;
   reason.nearest = worst.nearest;
@@ -160,6 +187,7 @@ const CellAnswer& AskingLine::ask(double now_s) noexcept {
   answer_.done_s = sensors::clock_now_s();
   histograms_.asking.add(answer_.done_s - now_s);
   look_at_cameras();
+  remember_parts(placed);
   find_reason(placed);
   if (!on_time) {
     answer_.reason.limit = MotionLimit::clock;

@@ -56,6 +56,10 @@ class AskingLine {
   /// False: nobody knows where the robot is.
   [[nodiscard]] bool place_parts(double now_s) noexcept;
   void look_at_cameras() noexcept;
+  /// Keeps where the parts were, for the speeds.
+  void remember_parts(bool placed) noexcept;
+  /// NaN where it is not known how it moved.
+  [[nodiscard]] double speed_m_s(std::size_t part) const noexcept;
   void find_reason(bool placed) noexcept;
   void note(bool was_stopped) noexcept;
 
@@ -65,6 +69,12 @@ class AskingLine {
   search::SearchEvaluator& evaluator_;
   const robot::JointHistory* history_;
   const std::vector<std::unique_ptr<CameraLine>>& cameras_;
+  struct PlacesAtTime {
+    double time_s = Proximity::kNaN;
+    std::vector<Capsule> parts_world;
+  };
+  PlacesAtTime newer_;  ///< less than 0.1 s old
+  PlacesAtTime older_;  ///< less than 0.2 s
   CellAnswer answer_;
   bool has_asked_ = false;
   EventQueue events_;

@@ -114,7 +114,8 @@ std::string_view sentence(const Reason& reason, const Names& names, std::span<ch
     line.add("; blind layer ").add(reason.blind_m, " m");
     line.add(", what moves at ").add(reason.v_max_m_s, " m/s for ").add(reason.reaction_s, " s is taken off");
     if (reason.stop_m > 0) {
-      line.add(", limit ").add(reason.stop_m, " m beyond the layer");
+      line.add(", limit ").add(reason.stop_m, " m beyond the layer: stops at ");
+      line.add(reason.blind_m + reason.stop_m, " m");
     }
   }
   if (reason.camera) {

@@ -51,8 +51,10 @@ struct Reason {
   double blind_m = Proximity::kNaN;
   double stop_m = 0;
   double v_max_m_s = 0;
-  double reaction_s = Proximity::kNaN;  ///< from the newest exposure to the answer
-  std::optional<std::size_t> camera{};  ///< the first that is not live or whose image is late
+  double reaction_s = Proximity::kNaN;      ///< from the newest exposure to the answer
+  double part_motion_m = Proximity::kNaN;   ///< how far the part may have moved since its joint state
+  double part_speed_m_s = Proximity::kNaN;  ///< of its ends, over the last 0.1 to 0.2 s; NaN: not known yet
+  std::optional<std::size_t> camera{};      ///< the first that is not live or whose image is late
   CameraState camera_state = CameraState::live;
   double camera_age_s = Proximity::kNaN;
   double joints_age_s = Proximity::kNaN;

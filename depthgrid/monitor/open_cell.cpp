@@ -122,7 +122,9 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const
             std::make_unique<sensors::RecordedCamera>(camera.recording, cell::recording_options(camera), playback));
         break;
       case SourceKind::ros2:
-        sources.cameras.push_back(std::make_unique<sensors::Ros2Camera>(ros2, camera.device));
+        sources.cameras.push_back(std::make_unique<sensors::Ros2Camera>(
+            ros2, camera.device,
+            sensors::Ros2Place{.world = cell.ros2.frame, .frame = camera.frame, .max_age_s = camera.frame_age_s}));
         break;
       default:
         sources.cameras.push_back(device_camera(camera, setup.rig.cameras[k], playback));
@@ -200,6 +202,18 @@ std::string robot_description(const cell::Cell& cell) {
   return cell.robot && !cell.robot->is_built_in ? read_whole_file(cell.robot->urdf, kLargestUrdf) : std::string();
 }
 
+/// The cameras whose places the cell's file says: of the others /tf tells.
+Rig standing(const cell::Cell& cell, const cell::CellSetup& setup) {
+  Rig rig = setup.rig;
+  rig.cameras.clear();
+  for (std::size_t k = 0; k < setup.rig.cameras.size(); ++k) {
+    if (cell.cameras.at(k).frame.empty()) {
+      rig.cameras.push_back(setup.rig.cameras[k]);
+    }
+  }
+  return rig;
+}
+
 std::filesystem::path with_time(const std::filesystem::path& file) {
   constexpr std::string_view kPlace = "{time}";
   std::string name = file.string();
@@ -218,8 +232,10 @@ std::filesystem::path with_time(const std::filesystem::path& file) {
 
 std::unique_ptr<Output> ros2_output(const cell::Cell& cell, const cell::CellSetup& setup, const Names& names,
                                     std::shared_ptr<dds::Node> ros2) {
-  const Ros2OutputSettings settings{
-      .names = names, .rig = setup.rig, .frame = cell.ros2.frame, .robot_description = robot_description(cell)};
+  const Ros2OutputSettings settings{.names = names,
+                                    .rig = standing(cell, setup),
+                                    .frame = cell.ros2.frame,
+                                    .robot_description = robot_description(cell)};
   return ros2_output(std::move(ros2), settings);
 }
 
@@ -228,6 +244,7 @@ std::unique_ptr<Recorder> recorder(const cell::Cell& cell, const cell::CellSetup
   settings.file = with_time(cell.outputs.record);
   settings.names = names;
   settings.rig = setup.rig;
+  settings.standing = standing(cell, setup);
   if (setup.robot) {
     for (const robot::Joint& joint : setup.robot->model.joints()) {
       settings.joints.push_back(joint.name);

@@ -29,6 +29,7 @@ PartPlaces::PartPlaces(const cell::CellSetup& setup)
   }
   links_world_.resize(links_.size());
   motion_m_.resize(links_.size());
+  part_motion_m_.resize(asked_.size());
 }
 
 bool PartPlaces::find(double now_s, const robot::JointHistory* history, const robot::JointMoment& known,
@@ -51,6 +52,7 @@ bool PartPlaces::find(double now_s, const robot::JointHistory* history, const ro
     }
     parts[i] = links_world_[link];
     // Not finite: the evaluator answers not_evaluated.
+    part_motion_m_[i] = placed ? motion_m_[link] : Proximity::kNaN;
     parts[i].radius_m += placed ? motion_m_[link] : Proximity::kNaN;
     ++link;
   }

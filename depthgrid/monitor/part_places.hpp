@@ -20,6 +20,8 @@ class PartPlaces {
   /// nobody knows where the robot is; parts on it then have no radius. `history` may be null without a robot.
   [[nodiscard]] bool find(double now_s, const robot::JointHistory* history, const robot::JointMoment& known,
                           std::span<Capsule> parts) noexcept;
+  /// How far the part may have moved since the joint state, by the last find(); 0 of one that stands still.
+  [[nodiscard]] double motion_m(std::size_t part) const noexcept { return part_motion_m_[part]; }
 
  private:
   /// How far each joint may be from q_ at now_s, into moved_.
@@ -38,6 +40,7 @@ class PartPlaces {
   std::vector<Pose> T_world_link_;
   std::vector<Capsule> links_world_;
   std::vector<double> motion_m_;
+  std::vector<double> part_motion_m_;
 };
 
 }  // namespace depthgrid::monitor

@@ -164,7 +164,7 @@ void Recorder::State::begin() {
   joint_states = writer->add_channel(kRecordedJoints, type_of<messages::JointState>());
   distances = writer->add_channel(kRecordedDistances, type_of<messages::Distances>());
   happenings = writer->add_channel(kRecordedEvents, type_of<messages::Text>());
-  write(places, now, camera_frames(settings.rig, {.stamp = now, .frame_id = settings.frame}));
+  write(places, now, camera_frames(settings.standing, {.stamp = now, .frame_id = settings.frame}));
   if (!settings.robot_description.empty()) {
     const std::uint16_t description = writer->add_channel(kRecordedDescription, type_of<messages::Text>(), true);
     write(description, now, messages::Text{settings.robot_description});

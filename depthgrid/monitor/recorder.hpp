@@ -22,6 +22,7 @@ struct RecorderSettings {
   std::filesystem::path file;
   Names names{};
   Rig rig{};
+  Rig standing{};                     ///< its cameras whose places /tf_static tells
   std::vector<std::string> joints{};  ///< names; empty: there is no robot
   std::string frame = "world";        ///< what the world frame is called
   std::string robot_description{};    ///< the URDF's text; empty: not told

@@ -21,8 +21,16 @@ bool same(const std::optional<PinholeCamera>& a, const std::optional<PinholeCame
                  a->fy_px == b->fy_px && a->cx_px == b->cx_px && a->cy_px == b->cy_px));
 }
 
+constexpr std::string_view kCompressedDepth = "/compressedDepth";
+constexpr double kLookAgain_s = 0.002;
+/// As many as come within a tenth of a second at 1 kHz.
+constexpr dds::Qos kTransforms{dds::Reliability::best_effort, dds::Durability::volatile_, 100};
+
+/// Of image_transport's topic that of the images themselves counts.
 std::string beside(const std::string& topic, const std::string& name) {
-  return topic.substr(0, topic.rfind('/') + 1) + name;
+  const std::string base =
+      topic.ends_with(kCompressedDepth) ? topic.substr(0, topic.size() - kCompressedDepth.size()) : topic;
+  return base.substr(0, base.rfind('/') + 1) + name;
 }
 
 /// None where the camera is not calibrated. Throws Error for images that are no pinhole's.
@@ -40,11 +48,18 @@ std::optional<PinholeCamera> intrinsics_of(std::span<const std::byte> message, c
 
 }  // namespace
 
-Ros2Camera::Ros2Camera(std::shared_ptr<dds::Node> node, std::string topic)
-    : node_(std::move(node)), topic_(std::move(topic)) {}
+Ros2Camera::Ros2Camera(std::shared_ptr<dds::Node> node, std::string topic, Ros2Place place)
+    : node_(std::move(node)),
+      topic_(std::move(topic)),
+      place_(std::move(place)),
+      is_compressed_(topic_.ends_with(kCompressedDepth)),
+      frames_(place_.max_age_s) {}
 
 void Ros2Camera::open() {
-  images_.emplace(node_->subscribe(topic_, messages::type_of<messages::Image>(), dds::kSensorData));
+  const messages::MessageType& type =
+      is_compressed_ ? messages::type_of<messages::CompressedImage>() : messages::type_of<messages::Image>();
+  waiting_.reset();
+  images_.emplace(node_->subscribe(topic_, type, dds::kSensorData));
   info_ = {.name = "ROS 2 topic " + topic_, .serial = topic_, .clock = "this computer's, by the messages' stamps"};
   if (!calibrations_) {
     calibrations_.emplace(
@@ -56,12 +71,88 @@ void Ros2Camera::open() {
     images_.reset();
     fail(refused_);
   }
+  if (!place_.frame.empty()) {
+    try {
+      find_frame();
+    } catch (const Error&) {
+      images_.reset();
+      throw;
+    }
+  }
   info_.intrinsics = intrinsics_;
   info_.metres_per_unit = messages::kMetresPerUnit;
   reason_.clear();
 }
 
-void Ros2Camera::close() noexcept { images_.reset(); }
+void Ros2Camera::close() noexcept {
+  waiting_.reset();
+  images_.reset();
+}
+
+// The subscriptions stay, as that of the calibration does: what was said once is not said again to them.
+void Ros2Camera::find_frame() {
+  const messages::MessageType& type = messages::type_of<messages::Transforms>();
+  if (!moving_) {
+    standing_.emplace(node_->subscribe("/tf_static", type, dds::kLatched));
+    moving_.emplace(node_->subscribe("/tf", type, kTransforms));
+  }
+  const double end_s = clock_now_s() + kLongestForInfo_s;
+  for (;;) {
+    listen_to_frames();
+    // Of frames that move the newest transforms are enough to know that they lead there.
+    const PlaceAtTime place = frames_.find(place_.world, place_.frame, messages::nanoseconds(stamp_of(clock_now_s())));
+    if (place.T_world_frame || place.may_come) {
+      return;
+    }
+    if (clock_now_s() > end_s) {
+      fail(place.reason);
+    }
+    (void)wait_until(end_s, kLookAgain_s);
+  }
+}
+
+void Ros2Camera::listen_to_frames() {
+  while (standing_->take(frames_message_).message) {
+    frames_.add(messages::from_bytes<messages::Transforms>(frames_message_), true);
+  }
+  while (moving_->take(frames_message_).message) {
+    frames_.add(messages::from_bytes<messages::Transforms>(frames_message_), false);
+  }
+}
+
+Reading Ros2Camera::place_image(DepthReading& reading, double longest_s) {
+  const double end_s = clock_now_s() + longest_s;
+  for (;;) {
+    listen_to_frames();
+    PlaceAtTime place = frames_.find(place_.world, place_.frame, waiting_ns_);
+    if (place.T_world_frame) {
+      reading = *waiting_;
+      reading.T_world_camera = place.T_world_frame;
+      waiting_.reset();
+      return Reading::got;
+    }
+    if (!place.may_come || clock_now_s() - waiting_->time_s > place_.max_age_s) {
+      waiting_.reset();
+      fail(place.reason, ", and no other came within ", place_.max_age_s, " s");
+    }
+    if (clock_now_s() >= end_s) {
+      return Reading::nothing;
+    }
+    (void)wait_until(end_s, kLookAgain_s);
+  }
+}
+
+messages::Header Ros2Camera::read_image(DepthReading& reading) {
+  if (!is_compressed_) {
+    const auto image = messages::from_bytes<messages::Image>(message_);
+    reading.depth = messages::depth_view(image, pixels_);
+    return image.header;
+  }
+  const auto image = messages::from_bytes<messages::CompressedImage>(message_);
+  files::read_png16(messages::compressed_depth(image).png, "image", PinholeCamera{}, "", png_);  // of any size
+  reading.depth = depth_view(png_.pixels, png_.width_px, png_.height_px, messages::kMetresPerUnit);
+  return image.header;
+}
 
 // A calibration that was refused stays refused, however often the camera is opened, until the driver says another.
 bool Ros2Camera::has_other_calibration() {
@@ -95,24 +186,28 @@ Reading Ros2Camera::newest(DepthReading& reading) {
   if (taken == 0) {
     return Reading::nothing;
   }
-  const auto image = messages::from_bytes<messages::Image>(message_);
+  const messages::Header header = read_image(reading);
   if (frame_.empty()) {
-    frame_ = image.header.frame_id;
-  } else if (image.header.frame_id != frame_) {
+    frame_ = header.frame_id;
+  } else if (header.frame_id != frame_) {
     fail("images of two frames come on one topic, '", printable_excerpt(frame_), "' and '",
-         printable_excerpt(image.header.frame_id), "': does a second driver publish there?");
+         printable_excerpt(header.frame_id), "': does a second driver publish there?");
   }
-  reading.depth = messages::depth_view(image, pixels_);
   // The same stamp is the same time: read twice, the two clocks differ by microseconds, and an image that came twice
   // would be a new one with the pixels of the one before.
-  const std::int64_t stamp_ns = messages::nanoseconds(image.header.stamp);
+  const std::int64_t stamp_ns = messages::nanoseconds(header.stamp);
   if (stamp_ns != stamp_ns_) {
     stamp_ns_ = stamp_ns;
-    time_s_ = clock_time_s(image.header.stamp);
+    time_s_ = clock_time_s(header.stamp);
   }
   reading.time_s = time_s_;
   reading.T_world_camera.reset();
   reading.skipped = taken - 1;
+  if (!place_.frame.empty()) {
+    waiting_ = reading;
+    waiting_ns_ = stamp_ns;
+    return place_image(reading, 0);
+  }
   return Reading::got;
 }
 
@@ -120,6 +215,9 @@ Reading Ros2Camera::next(DepthReading& reading, double longest_s) noexcept try {
   if (!images_) {
     reason_ = "is not open";
     return Reading::failed;
+  }
+  if (waiting_) {
+    return place_image(reading, longest_s);
   }
   return images_->wait(longest_s) ? newest(reading) : Reading::nothing;
 } catch (const std::exception& error) {

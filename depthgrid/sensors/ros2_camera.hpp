@@ -9,12 +9,25 @@
 #include <vector>
 
 #include "depthgrid/dds/node.hpp"
+#include "depthgrid/files/png.hpp"
 #include "depthgrid/messages/image.hpp"
 #include "depthgrid/sensors/source.hpp"
+#include "depthgrid/sensors/transform_history.hpp"
 
 namespace depthgrid::sensors {
 
-/// Images of sensor_msgs/Image: 16UC1 in millimetres, 32FC1 in metres. Their stamps are taken for the middle of the
+/// Where a camera of a moving or unmeasured mount stands: its frame on /tf and /tf_static.
+struct Ros2Place {
+  std::string world;  ///< frame that is the world
+  std::string frame;  ///< the depth imager's optical frame; empty: the place is stated elsewhere
+  /// Between two transforms of a moving frame, and for how long after an image the later one may come.
+  double max_age_s = 0.1;
+};
+
+/// Images of sensor_msgs/Image: 16UC1 in millimetres, 32FC1 in metres; of a topic that ends with /compressedDepth those
+/// of sensor_msgs/CompressedImage, 16UC1. With a place each image has the pose of its stamp: open() throws where no
+/// transforms lead to the frame within two seconds; an image of which the pose is not known in time is a failure. Their
+/// stamps are taken for the middle of the
 /// exposure, by this computer's clock. Intrinsics are those of the topic camera_info beside it, where one comes within
 /// two seconds of the first open(); another one that comes later ends next() as failed, and the next open() knows it. A
 /// topic with "rect" in its name has those of rectified images. Images of a lens that distorts are refused: they have
@@ -22,7 +35,7 @@ namespace depthgrid::sensors {
 class Ros2Camera final : public DepthSource {
  public:
   /// `topic`: "/camera/depth/image_raw".
-  Ros2Camera(std::shared_ptr<dds::Node> node, std::string topic);
+  Ros2Camera(std::shared_ptr<dds::Node> node, std::string topic, Ros2Place place = {});
 
   void open() override;
   void close() noexcept override;
@@ -32,6 +45,13 @@ class Ros2Camera final : public DepthSource {
 
  private:
   [[nodiscard]] Reading newest(DepthReading& reading);
+  /// Of the message into the reading, time and pose left out.
+  messages::Header read_image(DepthReading& reading);
+  /// Waits for the pose of the image at hand, at most so long.
+  [[nodiscard]] Reading place_image(DepthReading& reading, double longest_s);
+  void listen_to_frames();
+  /// Throws Error where no transforms lead there.
+  void find_frame();
   /// Whether camera_info says something else than at the last look, or what is refused.
   [[nodiscard]] bool has_other_calibration();
 
@@ -40,6 +60,15 @@ class Ros2Camera final : public DepthSource {
   std::optional<dds::Subscription> images_;
   std::vector<std::byte> message_;
   messages::DepthPixels pixels_;
+  files::Gray16Image png_;
+  Ros2Place place_;
+  bool is_compressed_;
+  std::optional<dds::Subscription> moving_;
+  std::optional<dds::Subscription> standing_;
+  std::vector<std::byte> frames_message_;
+  TransformHistory frames_;
+  std::optional<DepthReading> waiting_;      ///< for its pose; its pixels are in message_, pixels_ or png_
+  std::int64_t waiting_ns_ = 0;              ///< its stamp
   std::optional<PinholeCamera> intrinsics_;  ///< as they were told last
   std::optional<dds::Subscription> calibrations_;
   std::string refused_;        ///< why the calibration that was told last is; empty: it is not

@@ -20,6 +20,7 @@
 #include "depthgrid/monitor/open_cell.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "program/interruption.hpp"
+#include "program/run/records.hpp"
 #include "program/run/run_text.hpp"
 #include "program/usage_error.hpp"
 #include "program/warning.hpp"
@@ -226,6 +227,7 @@ void run_cell(const RunOptions& options) {
   if (!cell.outputs.record.empty()) {
     monitor.record(monitor::recorder(cell, setup, monitor.names()));
   }
+  Records records(cell, setup, monitor);
   Teller teller(cell.outputs.terminal, monitor.names());
   ask_before_the_end();
   const double begin_s = sensors::clock_now_s();
@@ -236,15 +238,20 @@ void run_cell(const RunOptions& options) {
     (void)sensors::wait_until(options.seconds ? begin_s + *options.seconds : begin_s + 1e9, kLook_s);
     for (const monitor::Event& event : monitor.events()) {
       teller.event(event, begin_s);
+      records.event(event);
     }
     if (monitor.newest(answer)) {
       teller.status(answer, begin_s);
     }
+    records.look(answer);
   }
   monitor.stop();
   for (const monitor::Event& event : monitor.events()) {
     teller.event(event, begin_s);
+    records.event(event);
   }
+  (void)monitor.newest(answer);
+  records.end(answer);
   teller.end();
   std::FILE* const out = cell.outputs.jsonl.filename() == "-" ? stderr : stdout;
   (void)std::fputs(summary(monitor, outputs, teller.stops()).c_str(), out);

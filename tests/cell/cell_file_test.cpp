@@ -160,6 +160,8 @@ constexpr Broken kBroken[] = {
     {"look_at_m: [0, 0, 0.5]", "rpy_deg: [0, 0, 0], up: [0, 0, 1]", "8:55", "belongs to look_at_m"},
     {"sensor: kinect_v1", "sensor: kinect", "14:5", "kinect"},
     {"    pose: {position_m: [2, 0, 1], look_at_m: [0, 0, 0.5]}\n", "", "4:5", "'pose' is missing"},
+    {"position_m: [2, 0, 1], look_at_m: [0, 0, 0.5]", "frame: camera", "8:12", "is looked up on /tf, which only"},
+    {"position_m: [2, 0, 1],", "position_m: [2, 0, 1], max_age_s: 1,", "8:35", "belongs to frame, remove it"},
     {"rotation_deg: 0.1", "rotation_rad: 0.1", "15:37", "unknown key 'rotation_rad' (did you mean 'rotation_deg'?)"},
     {"margins: {translation_m: 0.005, rotation_deg: 0.1}", "margins: 0.005", "15:5",
      "must be a map of keys and values"},
@@ -242,6 +244,26 @@ TEST(CellFile, WhatOtherFilesLackIsTold) {
   };
   EXPECT_EQ(asks("[arm]"), "");
   EXPECT_THAT(asks("[arm, tip]"), HasSubstr("ask: links: tip has no shape in the robot's file"));
+}
+
+TEST(CellFile, ATopicsCameraMayStandWhereItsFrameIs) {
+  std::string text = whole_cell();
+  const auto replace = [&](const std::string& what, const std::string& by) {
+    ASSERT_NE(text.find(what), std::string::npos) << what;
+    text.replace(text.find(what), what.size(), by);
+  };
+  replace("    pose: {position_m: [2, 0, 1], look_at_m: [0, 0, 0.5]}\n",
+          "    pose: {frame: left_optical, max_age_s: 0.2}\n");
+  replace("source: simulated\n    rate_hz: 10\n", "source: ros2\n    topic: /left/image_rect\n");
+  const Cell cell = parse_cell(text, "a.yaml");
+  EXPECT_EQ(cell.cameras[0].frame, "left_optical");
+  EXPECT_EQ(cell.cameras[0].frame_age_s, 0.2);
+  EXPECT_FALSE(cell.cameras[0].T_world_camera);
+  EXPECT_TRUE(setup(cell).rig.cameras[0].T_world_camera.isApprox(Pose::Identity())) << "until its images come";
+  EXPECT_THAT(test::thrown_message([&] {
+                (void)parse_cell(with(text, "frame: left_optical,", "frame: a, position_m: [0, 0, 1],"), "a.yaml");
+              }),
+              HasSubstr("says nothing beside frame"));
 }
 
 }  // namespace

@@ -131,7 +131,7 @@ TEST(Sentence, NamesPartDistanceAndCamera) {
   std::array<char, 640> buffer{};
   EXPECT_EQ(sentence(reason, names(), buffer),
             "elbow is 0.25 m from a surface seen by left; blind layer 0.1 m, what moves at 1.6 m/s for 0.03 s is taken "
-            "off, limit 0.2 m beyond the layer");
+            "off, limit 0.2 m beyond the layer: stops at 0.3 m");
   reason.camera = 1;
   reason.camera_state = CameraState::frozen;
   reason.camera_age_s = 0.4;

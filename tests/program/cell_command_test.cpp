@@ -164,6 +164,24 @@ TEST(RunCommand, TopicsOfOthersAreNamedInTheCellFile) {
   EXPECT_THAT(run_command("cell check cell.yaml", folder).err, HasSubstr("are of MCAP files, and . is none"));
 }
 
+TEST(RunCommand, LogsStopsAndKeepsNumbersForPrometheus) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  (void)folder.write("cell.yaml", recorded_cell());
+  (void)folder.write("stops.log", "before\n");
+  edit(folder, "cell.yaml", "outputs: {", "outputs: {log: stops.log, prometheus: cell.prom, ");
+  const CommandResult result = run_command("run cell.yaml --seconds 1.5", folder);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(read_bytes(folder / "stops.log"),
+              ::testing::ContainsRegex("^before\n20[^ ]+Z (stop|go): .* m: blind layer "));
+  EXPECT_THAT(read_bytes(folder / "cell.prom"), ::testing::ContainsRegex("\ndepthgrid_images_total.*taken.. [1-9]"));
+  edit(folder, "cell.yaml", "stops.log", "nowhere/stops.log");
+  EXPECT_THAT(run_command("run cell.yaml --seconds 1", folder).err, HasSubstr("nowhere/stops.log: cannot be written"));
+  edit(folder, "cell.yaml", "nowhere/stops.log", "stops.log");
+  edit(folder, "cell.yaml", "cell.prom", "nowhere/cell.prom");
+  EXPECT_THAT(run_command("run cell.yaml --seconds 1", folder).err, HasSubstr("nowhere"));
+}
+
 TEST(RunCommand, CtrlCEndsItWithASummary) {
   const TemporaryFolder folder;
   write_wall(folder);

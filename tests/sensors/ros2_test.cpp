@@ -13,10 +13,14 @@
 
 #include "dds/loopback.hpp"
 #include "depthgrid/core/error.hpp"
+#include "depthgrid/core/whole_file.hpp"
+#include "depthgrid/files/png.hpp"
+#include "depthgrid/messages/serialization.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/ros2_camera.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
 #include "depthgrid/sensors/ros2_joints.hpp"
+#include "files/temporary_folder.hpp"
 
 namespace depthgrid::sensors {
 namespace {
@@ -236,6 +240,83 @@ TEST_F(Ros2Source, CameraThatSendsColoursHasFailedAndSaysSo) {
   EXPECT_EQ(found, Reading::failed);
   EXPECT_NE(camera.reason().find("/camera/image: "), std::string_view::npos) << camera.reason();
   EXPECT_NE(camera.reason().find("rgb8"), std::string_view::npos) << camera.reason();
+}
+
+TEST_F(Ros2Source, CompressedDepthComesAsItWas) {
+  dds::Publisher images =
+      driver_.publish("/camera/depth/image_raw/compressedDepth", type_of<messages::CompressedImage>(), dds::kReliable);
+  Ros2Camera camera(node_, "/camera/depth/image_raw/compressedDepth");
+  camera.open();
+  const test::TemporaryFolder folder;
+  const std::vector<std::uint16_t> pixels{0, 1, 2, 3, 1000, 2000, 3000, 4000, 65535, 7, 8, 9};
+  files::write_png_gray16(folder / "a.png", 4, 3, pixels);
+  const std::string png = read_whole_file(folder / "a.png", 100000);
+  const std::string data = messages::compressed_depth_data(std::as_bytes(std::span(png)));
+  messages::CompressedImage image;
+  image.header.stamp = stamp_of(clock_now_s());
+  image.format = "16UC1; compressedDepth png";
+  image.data = std::as_bytes(std::span(data));
+  send(images, image);
+  DepthReading reading;
+  ASSERT_TRUE(becomes([&] { return camera.next(reading, 0.1) == Reading::got; })) << camera.reason();
+  ASSERT_EQ(reading.depth.width_px, 4);
+  ASSERT_EQ(reading.depth.height_px, 3);
+  EXPECT_EQ(reading.depth.metres_per_unit, 0.001);
+  const auto* units = static_cast<const std::uint16_t*>(reading.depth.data);
+  EXPECT_EQ(std::vector<std::uint16_t>(units, units + 12), pixels);
+  image.format = "32FC1; compressedDepth png";
+  send(images, image);
+  Reading found = Reading::nothing;
+  ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.1)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::failed) << "its depths are rounded";
+  EXPECT_NE(camera.reason().find("32FC1"), std::string_view::npos) << camera.reason();
+}
+
+/// A frame x metres from its parent.
+messages::Transforms frame_at(const char* name, const char* parent, double x, double time_s) {
+  messages::TransformStamped stamped;
+  stamped.header = {.stamp = stamp_of(time_s), .frame_id = parent};
+  stamped.child_frame_id = name;
+  stamped.transform.translation.x = x;
+  return {.transforms = {stamped}};
+}
+
+TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
+  dds::Publisher images = driver_.publish("/camera/image", type_of<messages::Image>(), dds::kReliable);
+  dds::Publisher standing = driver_.publish("/tf_static", type_of<messages::Transforms>(), dds::kLatched);
+  dds::Publisher moving = driver_.publish("/tf", type_of<messages::Transforms>(), dds::kReliable);
+  Ros2Camera camera(node_, "/camera/image", {.world = "world", .frame = "camera_optical", .max_age_s = 0.5});
+  std::string why;
+  try {
+    camera.open();
+  } catch (const Error& error) {
+    why = error.what();
+  }
+  EXPECT_NE(why.find("lead from frame 'camera_optical' to 'world'"), std::string::npos) << why;
+  ASSERT_TRUE(standing.write(messages::to_bytes(frame_at("camera_optical", "flange", 0.25, 0))));
+  const double begin_s = clock_now_s();
+  send(moving, frame_at("flange", "world", 1, begin_s));
+  camera.open();
+  DepthReading reading;
+  const std::vector<std::uint16_t> pixels(12, 1500);
+  const double exposed_s = clock_now_s();
+  send(images, image_of(pixels, 4, exposed_s));
+  EXPECT_EQ(camera.next(reading, 0.05), Reading::nothing) << "where it is then is not known yet";
+  send(moving, frame_at("flange", "world", 2, exposed_s + (exposed_s - begin_s)));
+  ASSERT_TRUE(becomes([&] {
+    const Reading found = camera.next(reading, 0.05);
+    EXPECT_NE(found, Reading::failed) << camera.reason();
+    return found != Reading::nothing;
+  }));
+  ASSERT_TRUE(reading.T_world_camera);
+  EXPECT_NEAR(reading.T_world_camera->translation().x(), 1.75, 1e-3) << "halfway, and its place on the flange";
+  EXPECT_EQ(static_cast<const std::uint16_t*>(reading.depth.data)[11], 1500);
+  Reading found = Reading::nothing;
+  send(images, image_of(pixels, 4, clock_now_s() + 0.5));
+  ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.05)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::failed) << "/tf is silent";
+  EXPECT_NE(camera.reason().find("the newest transform of frame 'flange' on /tf is"), std::string_view::npos)
+      << camera.reason();
 }
 
 TEST_F(Ros2Source, JointsAreFoundByTheirNames) {

@@ -1,0 +1,38 @@
+// What `depthgrid run` keeps beside its answers: the log of stops, and the numbers for Prometheus.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "depthgrid/cell/cell_setup.hpp"
+#include "depthgrid/core/whole_file.hpp"
+#include "depthgrid/monitor/monitor.hpp"
+#include "depthgrid/monitor/stop_log.hpp"
+
+namespace depthgrid::program {
+
+/// Files of cell.outputs. One that cannot be written later on is told once, and the cell runs on.
+class Records {
+ public:
+  /// Throws Error where a file cannot be written. The monitor outlives it.
+  Records(const cell::Cell& cell, const cell::CellSetup& setup, const monitor::Monitor& monitor);
+
+  void event(const monitor::Event& event);
+  /// Now and then: once a second the numbers are written.
+  void look(const monitor::CellAnswer& newest);
+  /// The numbers as they are at the end.
+  void end(const monitor::CellAnswer& newest);
+
+ private:
+  void write_numbers(const monitor::CellAnswer& newest);
+
+  const monitor::Monitor& monitor_;
+  monitor::StopLogSettings settings_;
+  std::filesystem::path log_name_;
+  std::unique_ptr<std::FILE, CloseStream> log_;  ///< null: none, or it failed
+  std::filesystem::path numbers_;                ///< empty: none, or they failed
+  double next_s_ = 0;
+};
+
+}  // namespace depthgrid::program
