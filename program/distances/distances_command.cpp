@@ -14,6 +14,7 @@
 #include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/core/reason_text.hpp"
 #include "depthgrid/grid/grid_evaluator.hpp"
+#include "program/cell_arguments.hpp"
 #include "program/distances/distances_plan.hpp"
 #include "program/distances/frame_picture.hpp"
 #include "program/distances/least_padding.hpp"
@@ -196,7 +197,10 @@ void run(const DistancesOptions& options) {
 }
 
 void add_input_options(CLI::App& command, DistancesOptions& options) {
-  command.add_option("RECORDING", options.recording, "folder with a rig.json, a rig file, or an MCAP file of ROS 2")
+  command
+      .add_option("RECORDING", options.recording,
+                  "folder with a rig.json, a rig file, an MCAP file of ROS 2, or a cell file of recorded "
+                  "cameras, CELL.yaml")
       ->required();
   command.add_option("--cameras", options.cameras, "ids of the cameras to use, with commas: cam1,cam3 (default: all)")
       ->delimiter(',')
@@ -262,7 +266,10 @@ void add_distances_command(CLI::App& app) {
       "      --method search --sensor realsense_d435 --v-max 2 --box=-1,-1,0,1,1,2 --unobserved obstacle \\\n"
       "      --outside ignored --robot-pockets obstacle --pictures pictures\n"
       "One line a frame and point. distance_m is empty (null) where it is not known; see docs/command.md.");
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    take_cell_file(*command, *options);
+    run(*options);
+  });
 }
 
 }  // namespace depthgrid::program

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "depthgrid/cell/cell_file.hpp"
 #include "depthgrid/files/recording.hpp"
+#include "program/cell_arguments.hpp"
 #include "program/frame_selection.hpp"
 #include "program/info/agreement.hpp"
 #include "program/info/clamped_readings.hpp"
@@ -154,7 +156,10 @@ void run(const InfoOptions& options) {
 void add_info_command(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand("info", "what a recording holds and how well its cameras agree");
-  command->add_option("RECORDING", options->recording, "folder with a rig.json, a rig file, or an MCAP file of ROS 2")
+  command
+      ->add_option("RECORDING", options->recording,
+                   "folder with a rig.json, a rig file, an MCAP file of ROS 2, or a cell file of recorded "
+                   "cameras, CELL.yaml")
       ->required();
   command->add_option("--cameras", options->cameras, "ids of the cameras to use (default: all)")
       ->delimiter(',')
@@ -181,7 +186,15 @@ void add_info_command(CLI::App& app) {
       "  depthgrid info ../shared/data/kinect3_ball --frames 0:80:8\n"
       "  depthgrid info ../shared/data/redkitchen_poses --limit 4 --least-overlap 0.25 --stride 2\n"
       "How the figures are taken and what the suggested margins mean stands in docs/command.md.");
-  command->callback([options] { run(*options); });
+  command->callback([options] {
+    if (is_cell_file(options->recording)) {
+      const CellRecordingChoice choice = recording_of(cell::load_cell(options->recording));
+      options->recording = choice.recording;
+      options->cameras = options->cameras.empty() ? choice.cameras : options->cameras;
+      options->mcap.depth_topics = options->mcap.depth_topics.empty() ? choice.topics : options->mcap.depth_topics;
+    }
+    run(*options);
+  });
 }
 
 }  // namespace depthgrid::program

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "depthgrid/cell/cell_file.hpp"
 #include "depthgrid/core/error.hpp"
+#include "program/cell_arguments.hpp"
 #include "program/output_check.hpp"
 #include "program/output_file.hpp"
 #include "program/robot/robot_picture.hpp"
@@ -50,7 +52,7 @@ void add_robot_command(CLI::App& app) {
   auto options = std::make_shared<RobotOptions>();
   CLI::App* command =
       app.add_subcommand("robot", "whether a URDF loads; its joints, its capsules against its meshes, what is missing");
-  command->add_option("URDF", options->robot.file, "robot file")->required();
+  command->add_option("URDF", options->robot.file, "robot file, or a cell file, CELL.yaml, that names it")->required();
   add_robot_file_options(*command, options->robot, "Robot");
   command->add_option("--tip", options->tip, "only the links from the root to this one, and where it stands")
       ->group("Robot");
@@ -70,7 +72,16 @@ void add_robot_command(CLI::App& app) {
       "  depthgrid robot panda.urdf --package franka_description=/opt/franka_description --tip panda_hand \\\n"
       "      --joints=0,-0.8,0,-2.4,0,1.6,0.8,0.04\n"
       "Exit code 1 where the robot does not load. What the columns mean stands in docs/command.md.");
-  command->callback([options] { run_robot(*options); });
+  command->callback([options] {
+    if (is_cell_file(options->robot.file)) {
+      const cell::Cell cell = cell::load_cell(options->robot.file);
+      if (!cell.robot || cell.robot->is_built_in) {
+        fail_usage(options->robot.file, cell.robot ? ": its robot is built in, and has no file" : ": has no robot");
+      }
+      options->robot.file = cell.robot->urdf;
+    }
+    run_robot(*options);
+  });
 }
 
 }  // namespace depthgrid::program
