@@ -99,6 +99,7 @@ struct AskEntry {
   double rho_m = kDefaultRho;
   double resolution_m = 0.005;
   double stop_m = 0;                   ///< a part that is not farther than this, beyond its blind layer, says stop
+  double hold_s = 0;                   ///< a stop lasts until all was clear for so long
   std::optional<double> stopping_s{};  ///< what the robot takes to stand still, for the log
   bool moving_links = false;           ///< every link that at least two joints move
   std::vector<std::string> links{};    ///< or these

@@ -37,8 +37,8 @@ constexpr std::array<std::string_view, 6> kJointsKeys{"source", "file", "topic",
 constexpr std::array<std::string_view, 2> kSpaceKeys{"low_m", "high_m"};
 constexpr std::array<std::string_view, 4> kPolicyKeys{"unobserved", "outside", "robot_pockets", "ignored_pocket_m"};
 constexpr std::array<std::string_view, 3> kMemoryKeys{"start", "voxel_m", "thinnest_hidden_m"};
-constexpr std::array<std::string_view, 7> kAskKeys{"rate_hz",    "rho_m", "resolution_m", "stop_m",
-                                                   "stopping_s", "links", "points"};
+constexpr std::array<std::string_view, 8> kAskKeys{"hold_s", "rate_hz",    "rho_m", "resolution_m",
+                                                   "stop_m", "stopping_s", "links", "points"};
 constexpr std::array<std::string_view, 3> kPointKeys{"name", "at_m", "radius_m"};
 constexpr std::array<std::string_view, 2> kAgeKeys{"image_s", "joints_s"};
 constexpr std::array<std::string_view, 7> kOutputKeys{"udp",        "jsonl",    "record", "log",
@@ -374,6 +374,7 @@ AskEntry ask_of(const Section& section, bool has_robot) {
   ask.resolution_m = section.number("resolution_m", {0.0005, 1}, "m", "tightness", ask.resolution_m);
   ask.stop_m = section.number("stop_m", {0, ask.rho_m}, "m",
                               "a part that is not farther than this beyond its blind layer says stop", ask.stop_m);
+  ask.hold_s = section.number("hold_s", {0, 60}, "s", "a stop lasts until all was clear for so long", ask.hold_s);
   ask.stopping_s = section.number_if("stopping_s", {0, 10}, "s");
   if (section.is_list("links")) {
     ask.links = section.texts("links", "names of links");

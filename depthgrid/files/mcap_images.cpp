@@ -182,7 +182,7 @@ void McapImages::check_depth(const McapChannel& channel) {
   if (channel.encoding != "cdr") {
     fail(where, " has messages in the encoding ", in_quotes(channel.encoding), ", must be cdr, as ROS 2 records");
   }
-  const std::vector<McapEntry> entries = reader_.entries(channel.id);
+  const std::vector<McapEntry> entries = reader_.entries(reader_.same_as(channel));
   if (entries.empty()) {
     fail(where, " has no messages");
   }
@@ -202,7 +202,7 @@ bool McapImages::holds_depth(const McapChannel& channel) {
   if (channel.encoding != "cdr" || (channel.type != kImage && channel.type != kCompressedImage)) {
     return false;
   }
-  const std::vector<McapEntry> entries = reader_.entries(channel.id);
+  const std::vector<McapEntry> entries = reader_.entries(reader_.same_as(channel));
   if (entries.empty()) {
     return false;
   }
@@ -231,7 +231,10 @@ std::vector<McapImages::Topic> McapImages::find_topics(const McapChoice& choice)
   }
   if (choice.depth_topics.empty()) {
     for (const McapChannel& channel : reader_.channels()) {
-      if (holds_depth(channel)) {
+      const auto is_known = [&](const Topic& topic) {
+        return topic.channel->topic == channel.topic && topic.channel->type == channel.type;
+      };
+      if (std::none_of(found.begin(), found.end(), is_known) && holds_depth(channel)) {
         found.push_back({.channel = &channel,
                          .camera_id = camera_id_of(channel.topic),
                          .compressed = {},
@@ -274,7 +277,7 @@ std::vector<McapImages::Topic> McapImages::find_topics(const McapChoice& choice)
 
 void McapImages::read_stamps(Topic& topic) {
   const std::string where = name_ + ": topic " + in_quotes(topic.channel->topic);
-  for (const McapEntry& entry : reader_.entries(topic.channel->id)) {
+  for (const McapEntry& entry : reader_.entries(reader_.same_as(*topic.channel))) {
     in_context(where + ": message recorded at " + std::to_string(entry.log_time_ns) + " ns", [&] {
       const McapMessage message = reader_.read(entry);
       const messages::Header header = topic.compressed
@@ -320,7 +323,7 @@ RigCamera McapImages::camera_of(const Topic& topic, const McapChoice& choice) {
     fail(where, " has no calibration: there is no ", printable_excerpt(name),
          " (camera_info topics: ", others.empty() ? "none" : others, "); give a rig file");
   }
-  const std::vector<McapEntry> entries = reader_.entries(channel->id);
+  const std::vector<McapEntry> entries = reader_.entries(reader_.same_as(*channel));
   if (entries.empty()) {
     fail(where, " has no calibration: ", in_quotes(name), " has no messages; give a rig file");
   }

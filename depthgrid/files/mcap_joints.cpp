@@ -26,6 +26,10 @@ const McapChannel& joint_channel(const McapReader& reader, std::string_view topi
   std::string topics;
   for (const McapChannel& channel : reader.channels()) {
     if (channel.type == type && channel.encoding == "cdr") {
+      const auto is_known = [&](const McapChannel* other) { return other->topic == channel.topic; };
+      if (std::any_of(found.begin(), found.end(), is_known)) {
+        continue;  // a recorder that began anew
+      }
       topics += (topics.empty() ? "" : ", ") + printable_excerpt(channel.topic);
       if (topic.empty() || channel.topic == topic) {
         found.push_back(&channel);
@@ -68,7 +72,7 @@ JointTable load_mcap_joints(const std::filesystem::path& file, std::string_view 
   std::vector<StampedJoints> states;
   std::string missing;
   try {
-    for (const McapEntry& entry : reader.entries(channel.id)) {
+    for (const McapEntry& entry : reader.entries(reader.same_as(channel))) {
       const auto state = messages::from_bytes<messages::JointState>(reader.read(entry).data);
       if (auto q = positions(state, joints, missing)) {
         states.push_back({.stamp_ns = messages::nanoseconds(state.header.stamp), .q = std::move(*q)});

@@ -385,18 +385,19 @@ class McapReader::File {
     std::uint64_t at = kMcapMagic.size();
     for (;;) {
       if (size_ - at < kMcapRecordHead) {
-        note("it ends at byte " + std::to_string(size_) + " without the mark of its end");
+        note("it is cut: it ends at byte " + std::to_string(size_) + " without the mark of its end");
         return;
       }
       const Head head = head_at(at);
       if (head.opcode == 0 || !fits(at, head)) {
-        note("it ends at byte " + std::to_string(size_) + " within the record at byte " + std::to_string(at) +
-             "; what is before it is read");
+        note("it is cut: it ends at byte " + std::to_string(size_) + " within the record at byte " +
+             std::to_string(at) + "; what is before it is read");
         return;
       }
       if (!scan_record(at, head)) {
         if (!has_end_) {
-          note("it ends at byte " + std::to_string(size_) + " within its summary; its messages are all there");
+          note("it is cut: it ends at byte " + std::to_string(size_) +
+               " within its summary; its messages are all there");
         }
         return;
       }
@@ -605,6 +606,16 @@ const McapChannel* McapReader::channel(std::string_view topic) const noexcept {
     }
   }
   return nullptr;
+}
+
+std::vector<std::uint16_t> McapReader::same_as(const McapChannel& channel) const {
+  std::vector<std::uint16_t> ids;
+  for (const McapChannel& other : file_->channels()) {
+    if (other.topic == channel.topic && other.type == channel.type && other.encoding == channel.encoding) {
+      ids.push_back(other.id);
+    }
+  }
+  return ids;
 }
 
 const std::string& McapReader::profile() const noexcept { return file_->profile(); }

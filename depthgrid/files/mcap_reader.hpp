@@ -63,6 +63,8 @@ class McapReader {
   [[nodiscard]] std::span<const McapChannel> channels() const noexcept;
   /// Null where there is no such topic.
   [[nodiscard]] const McapChannel* channel(std::string_view topic) const noexcept;
+  /// All channels of this one's topic, type and encoding: a recorder that begins anew makes another for the same topic.
+  [[nodiscard]] std::vector<std::uint16_t> same_as(const McapChannel& channel) const;
   /// What the file calls itself: "ros2".
   [[nodiscard]] const std::string& profile() const noexcept;
   /// Texts that stand apart from messages, by the names of their records; of records of one name the first. Those of

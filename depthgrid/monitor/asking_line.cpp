@@ -33,10 +33,11 @@ MotionLimit limit_of(const Answer& answer) noexcept {
 
 }  // namespace
 
-AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::SearchEvaluator& evaluator,
+AskingLine::AskingLine(const cell::CellSetup& setup, const StopRule& rule, search::SearchEvaluator& evaluator,
                        const robot::JointHistory* history, const std::vector<std::unique_ptr<CameraLine>>& cameras)
     : places_(setup),
       has_robot_(setup.robot.has_value()),
+      hold_(rule.hold_s),
       max_image_age_s_(setup.options.max_image_age_s),
       evaluator_(evaluator),
       history_(history),
@@ -46,7 +47,7 @@ AskingLine::AskingLine(const cell::CellSetup& setup, double stop_m, search::Sear
   newer_.parts_world.resize(setup.parts.size());
   older_.parts_world.resize(setup.parts.size());
   answer_.camera_count = cameras_.size();
-  answer_.reason.stop_m = stop_m;
+  answer_.reason.stop_m = rule.stop_m;
   answer_.reason.v_max_m_s = setup.settings.v_max_m_s;
 }
 
@@ -160,6 +161,11 @@ void AskingLine::find_reason(bool placed) noexcept {
   answer_.stop = !(answer_.clear_m > reason.stop_m) || !any_image || !placed;
 }
 
+void AskingLine::hold_stop() noexcept {
+  answer_.stop = hold_.look(answer_.stop, answer_.time_s);
+  answer_.reason.clear_s = answer_.stop ? hold_.clear_s() : 0;
+}
+
 void AskingLine::note(bool was_stopped) noexcept {
   answers_.fetch_add(1, std::memory_order_relaxed);
   by_state_[static_cast<std::size_t>(answer_.reason.limit)].fetch_add(1, std::memory_order_relaxed);
@@ -193,6 +199,7 @@ const CellAnswer& AskingLine::ask(double now_s) noexcept {
     answer_.reason.limit = MotionLimit::clock;
     answer_.stop = true;
   }
+  hold_stop();
   note(was_stopped);
   has_asked_ = true;
   return answer_;

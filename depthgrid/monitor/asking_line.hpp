@@ -14,6 +14,7 @@
 #include "depthgrid/monitor/cell_answer.hpp"
 #include "depthgrid/monitor/event.hpp"
 #include "depthgrid/monitor/part_places.hpp"
+#include "depthgrid/monitor/stop_hold.hpp"
 #include "depthgrid/monitor/time_histogram.hpp"
 #include "depthgrid/robot/joint_history.hpp"
 #include "depthgrid/search/search_evaluator.hpp"
@@ -28,12 +29,17 @@ struct AskingHistograms {
   std::array<TimeHistogram, views::kMaxCameras> image_age;
 };
 
+struct StopRule {
+  double stop_m = 0;  ///< MonitorSettings::stop_m, and hold_s
+  double hold_s = 0;
+};
+
 /// - Threads: ask() belongs to one. The counters are for any.
 /// - ask() locks, allocates and throws nothing.
 class AskingLine {
  public:
   /// All that is handed over outlives it; the history is null without a robot.
-  AskingLine(const cell::CellSetup& setup, double stop_m, search::SearchEvaluator& evaluator,
+  AskingLine(const cell::CellSetup& setup, const StopRule& rule, search::SearchEvaluator& evaluator,
              const robot::JointHistory* history, const std::vector<std::unique_ptr<CameraLine>>& cameras);
 
   /// At time now_s, which goes on from call to call.
@@ -61,10 +67,13 @@ class AskingLine {
   /// NaN where it is not known how it moved.
   [[nodiscard]] double speed_m_s(std::size_t part) const noexcept;
   void find_reason(bool placed) noexcept;
+  /// A stop goes on until all was clear for a while, so that nothing moves in jerks.
+  void hold_stop() noexcept;
   void note(bool was_stopped) noexcept;
 
   PartPlaces places_;
   bool has_robot_;
+  StopHold hold_;
   double max_image_age_s_;
   search::SearchEvaluator& evaluator_;
   const robot::JointHistory* history_;

@@ -118,6 +118,9 @@ std::string_view sentence(const Reason& reason, const Names& names, std::span<ch
       line.add(reason.blind_m + reason.stop_m, " m");
     }
   }
+  if (reason.clear_s > 0) {
+    line.add("; clear for ").add(reason.clear_s, " s, the stop is held");
+  }
   if (reason.camera) {
     line.add("; camera ").add(name_of(names.cameras, *reason.camera)).add(" ").add(words_of(reason.camera_state));
     if (std::isfinite(reason.camera_age_s)) {

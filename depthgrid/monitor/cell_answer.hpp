@@ -50,6 +50,7 @@ struct Reason {
   double clear_m = Proximity::kNaN;  ///< the distance less the blind layer, not below 0
   double blind_m = Proximity::kNaN;
   double stop_m = 0;
+  double clear_s = 0;  ///< above 0: nothing is too near any more since then, the stop is held
   double v_max_m_s = 0;
   double reaction_s = Proximity::kNaN;      ///< from the newest exposure to the answer
   double part_motion_m = Proximity::kNaN;   ///< how far the part may have moved since its joint state

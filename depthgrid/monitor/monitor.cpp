@@ -46,6 +46,9 @@ const MonitorSettings& checked(const cell::CellSetup& setup, const MonitorSettin
   if (!(settings.stop_m >= 0) || !std::isfinite(settings.stop_m)) {
     fail("monitor: stops at ", settings.stop_m, " m, must be 0 or more");
   }
+  if (!(settings.hold_s >= 0) || !std::isfinite(settings.hold_s)) {
+    fail("monitor: holds a stop for ", settings.hold_s, " s, must be 0 or more");
+  }
   if (sources.cameras.size() != setup.rig.cameras.size()) {
     fail("monitor: ", sources.cameras.size(), " sources for ", setup.rig.cameras.size(), " cameras, must be one each");
   }
@@ -79,7 +82,8 @@ struct Monitor::State {
       cameras.push_back(std::make_unique<CameraLine>(std::move(sources.cameras[k]), setup.rig.cameras[k], line,
                                                      evaluator, intake ? &*intake : nullptr));
     }
-    asking.emplace(setup, settings.stop_m, evaluator, history ? &*history : nullptr, cameras);
+    asking.emplace(setup, StopRule{.stop_m = settings.stop_m, .hold_s = settings.hold_s}, evaluator,
+                   history ? &*history : nullptr, cameras);
     newest.emplace(asking->answer());
   }
 

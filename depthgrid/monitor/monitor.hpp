@@ -47,6 +47,7 @@ struct Sources {
 struct MonitorSettings {
   double rate_hz = 500;
   double stop_m = 0;  ///< clear distances that are not above it say stop
+  double hold_s = 0;  ///< answers say stop until none would have for so long
   double max_joints_age_s = 0.1;
   std::vector<bool> equal_images{};  ///< a camera each: the same pixels twice are no failure; empty: they are one
 };

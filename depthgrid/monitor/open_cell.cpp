@@ -141,6 +141,7 @@ MonitorSettings monitor_settings(const cell::Cell& cell) {
   MonitorSettings settings;
   settings.rate_hz = cell.ask.rate_hz;
   settings.stop_m = cell.ask.stop_m;
+  settings.hold_s = cell.ask.hold_s;
   settings.max_joints_age_s = cell.ages.joints_s;
   for (const cell::CameraEntry& camera : cell.cameras) {
     settings.equal_images.push_back(camera.equal_images);

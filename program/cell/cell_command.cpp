@@ -186,10 +186,17 @@ void add_cell_command(CLI::App& app) {
   CLI::App& command =
       *app.add_subcommand("cell", "the file that describes a robot cell: look at it, check it, begin one");
   command.require_subcommand(1);
+  command.footer(
+      "Examples:\n"
+      "  depthgrid cell new cell.yaml\n"
+      "  depthgrid cell check cell.yaml\n"
+      "  depthgrid cell show cell.yaml\n"
+      "docs/run.md says what each value means.");
   const auto add = [&](const char* name, const char* what, const char* argument, void (*work)(const std::string&)) {
     const auto file = std::make_shared<std::string>();
     CLI::App& sub = *command.add_subcommand(name, what);
     sub.add_option("FILE", *file, argument)->required();
+    sub.footer(std::string("Example:\n  depthgrid cell ") + name + " cell.yaml");
     sub.callback([file, work] { work(*file); });
   };
   add("show", "every value with its unit and where it comes from", "a cell file", show);

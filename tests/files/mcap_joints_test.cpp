@@ -69,5 +69,48 @@ TEST(McapJoints, WhatIsMissingIsNamed) {
   EXPECT_THAT(message("/joint_states"), HasSubstr("has no messages"));
 }
 
+/// As a recorder that began anew in the middle: the same topic once more.
+class TwoChannels {
+ public:
+  void record(std::uint8_t opcode, const std::string& contents) {
+    bytes_ += static_cast<char>(opcode);
+    number(contents.size(), 8);
+    bytes_ += contents;
+  }
+  void number(std::uint64_t value, int size) { bytes_ += little(value, size); }
+  static std::string little(std::uint64_t value, int size) {
+    std::string bytes;
+    for (int i = 0; i < size; ++i) {
+      bytes += static_cast<char>(value >> (8 * i));
+    }
+    return bytes;
+  }
+  static std::string text(const std::string& words) { return little(words.size(), 4) + words; }
+  void channel(std::uint16_t id) {
+    record(4, little(id, 2) + little(1, 2) + text("/joint_states") + text("cdr") + little(0, 4));
+  }
+  void message(std::uint16_t id, std::uint64_t time_ns, const messages::JointState& joints) {
+    const std::vector<std::byte> data = messages::to_bytes(joints);
+    record(5, little(id, 2) + little(0, 4) + little(time_ns, 8) + little(time_ns, 8) +
+                  std::string(reinterpret_cast<const char*>(data.data()), data.size()));
+  }
+  std::string bytes_ = "\x89MCAP0\r\n";
+};
+
+TEST(McapJoints, SeveralChannelsOfOneTopicCountAsOne) {
+  const test::TemporaryFolder folder;
+  TwoChannels file;
+  file.record(1, TwoChannels::text("ros2") + TwoChannels::text("test"));
+  file.record(3, TwoChannels::little(1, 2) + TwoChannels::text("sensor_msgs/msg/JointState") +
+                     TwoChannels::text("ros2msg") + TwoChannels::text(""));
+  file.channel(1);
+  file.message(1, 1, state(11, {"a", "b"}, {1, 2}));
+  file.channel(2);
+  file.message(2, 2, state(12, {"a", "b"}, {3, 4}));
+  (void)folder.write("two.mcap", file.bytes_);
+  const JointTable table = load_mcap_joints(folder / "two.mcap", "", kJoints);
+  EXPECT_THAT(table.joints.at(0).values, ElementsAre(1, 3));
+}
+
 }  // namespace
 }  // namespace depthgrid::files

@@ -45,7 +45,7 @@ struct Cell {
           std::make_unique<sensors::SimulatedCamera>(simulated, setup.rig.cameras[k], 20, k), setup.rig.cameras[k],
           settings, *evaluator, &*intake));
     }
-    asking.emplace(setup, 0.1, *evaluator, &*history, lines);
+    asking.emplace(setup, StopRule{.stop_m = 0.1, .hold_s = 0}, *evaluator, &*history, lines);
   }
 
   /// Every source in a thread of its own, for so long.

@@ -11,6 +11,7 @@
 #include "depthgrid/monitor/event.hpp"
 #include "depthgrid/monitor/image_check.hpp"
 #include "depthgrid/monitor/json_line.hpp"
+#include "depthgrid/monitor/stop_hold.hpp"
 #include "depthgrid/monitor/time_histogram.hpp"
 
 namespace depthgrid::monitor {
@@ -116,6 +117,21 @@ TEST(EventQueue, FromOneThreadToAnother) {
 }
 
 Names names() { return {"cell", {"left", "right"}, {"hand", "elbow"}}; }
+
+TEST(StopHold, AStopLastsUntilAllWasClearForAWhile) {
+  StopHold hold(0.5);
+  EXPECT_FALSE(hold.look(false, 10)) << "nothing was";
+  EXPECT_TRUE(hold.look(true, 11));
+  EXPECT_EQ(hold.clear_s(), 0);
+  EXPECT_TRUE(hold.look(false, 11.25));
+  EXPECT_EQ(hold.clear_s(), 0.25);
+  EXPECT_TRUE(hold.look(true, 11.375)) << "again";
+  EXPECT_TRUE(hold.look(false, 11.75));
+  EXPECT_FALSE(hold.look(false, 11.875));
+  StopHold none(0);
+  EXPECT_TRUE(none.look(true, 1));
+  EXPECT_FALSE(none.look(false, 1.001));
+}
 
 TEST(Sentence, NamesPartDistanceAndCamera) {
   Reason reason;
