@@ -1,14 +1,19 @@
 #include "depthgrid/search/depth_first.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
-namespace depthgrid::search {
-namespace {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "depthgrid/search/depth_first.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target: it must be seen once for each target.
+#include "depthgrid/search/near_children-inl.hpp"
 
-/// Obstacles move this much from one snapshot to the next, roughly, metres. Decides about time only.
-constexpr float kMoved = 0.01F;
+HWY_BEFORE_NAMESPACE();
+namespace depthgrid::search::octants::HWY_NAMESPACE {
 
+/// The nearest leaf below a node.
 class Walk {
  public:
   Walk(VerdictTree& tree, const Question& question, NearestLeaf& best, Count& count) noexcept
@@ -18,9 +23,8 @@ class Walk {
   void visit(VerdictNode& node) noexcept {
     const int level = node.cube.level + 1;
     std::array<float, 8> distances_m;  // NOLINT(*-member-init): written before it is read
-    const std::uint32_t near =
-        near_children(question_.axis, node.cube, lattice_.half_side_m(level), best_.bound_m(), distances_m) &
-        node.open & ~std::uint32_t{node.exhausted};
+    const std::uint32_t near = near_of(node.open & ~std::uint32_t{node.exhausted}, question_.axis, node.cube,
+                                       lattice_.half_side_m(level), best_.bound_m(), distances_m);
     if (near == 0) {
       return;
     }
@@ -77,6 +81,31 @@ class Walk {
   Count& count_;
 };
 
+void walk(VerdictTree& tree, const Question& question, NearestLeaf& best, Count& count) {
+  Walk(tree, question, best, count).visit(tree.root(count));
+}
+
+}  // namespace depthgrid::search::octants::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace depthgrid::search {
+namespace octants {
+
+HWY_EXPORT(walk);
+
+/// Offers leaves to `best` until no other can be nearer.
+void walk_from_root(VerdictTree& tree, const Question& question, NearestLeaf& best, Count& count) noexcept {
+  HWY_DYNAMIC_DISPATCH(walk)(tree, question, best, count);
+}
+
+}  // namespace octants
+
+namespace {
+
+/// Obstacles move this much from one snapshot to the next, roughly, metres. Decides about time only.
+constexpr float kMoved = 0.01F;
+
 }  // namespace
 
 void Memory::aim(const views::Snapshot& snapshot, const memory::MemorySnapshot* memory) noexcept {
@@ -95,7 +124,6 @@ Nearest find_nearest(Memory& memory, const Question& question, Count& count) noe
     return touching;
   }
   NearestLeaf best(tree.query(), question);
-  Walk walk(tree, question, best, count);
   float about_m = 0;
   bool whole = false;
   if (!memory.leaves.empty()) {
@@ -107,13 +135,13 @@ Nearest find_nearest(Memory& memory, const Question& question, Count& count) noe
     if (guess_m < best.distance_m()) {
       // If something is as near as in the snapshot before, nothing farther needs to be looked at.
       best.look_within(guess_m);
-      walk.visit(tree.root(count));
+      octants::walk_from_root(tree, question, best, count);
       whole = best.found() && best.distance_m() <= guess_m;
       best.look_within(best.distance_m());
     }
   }
   if (!whole) {
-    walk.visit(tree.root(count));
+    octants::walk_from_root(tree, question, best, count);
   }
   if (best.found()) {
     memory.leaves.add(best.leaf());
@@ -122,3 +150,4 @@ Nearest find_nearest(Memory& memory, const Question& question, Count& count) noe
 }
 
 }  // namespace depthgrid::search
+#endif

@@ -68,12 +68,9 @@ bool is_free(const CubeQuery& query, const Cube& cube, Count& count) noexcept {
     const Eigen::Vector3d c = camera.to_camera(centre);
     const double pose_error_m =
         camera.has_pose_error ? camera.pose_error(c) + query.lattice.largest_rate * half_diagonal_m : 0.0;
-    // Most balls that meet not known free space do so in one of the pixels nearest to their centre.
-    if (camera.space.to_view || !blocks(camera, centre, half_diagonal_m)) {
-      ++count.ball_tests;
-      if (!meets_not_known_free(camera, camera.space, c, half_diagonal_m + pose_error_m)) {
-        return true;
-      }
+    ++count.ball_tests;
+    if (!meets_not_known_free(camera, camera.space, c, half_diagonal_m + pose_error_m)) {
+      return true;
     }
     uncovered =
         uncovered && (camera.has_pose_error ? !covers_some(camera, c, half_diagonal_m)

@@ -63,7 +63,11 @@ class Gathering {
       }
       budget_.take(1);
       VerdictNode spare;
-      visit(tree_.child(node, lane, spare, count_));
+      VerdictNode& child = tree_.child(node, lane, spare, count_);
+      visit(child);
+      if ((child.open & ~std::uint32_t{child.exhausted}) == 0 && level < lattice_.leaf_level) {
+        node.exhausted |= static_cast<std::uint8_t>(1U << lane);
+      }
     }
   }
 

@@ -142,10 +142,13 @@ bool leaves_view(const PinholeCamera& c, const Eigen::Vector3d& p, double radius
 bool meets_not_known_free(const LocalCamera& camera, const Clip& clip, const Eigen::Vector3d& p_camera,
                           double radius_m) noexcept {
   radius_m += kGuard;
-  if (!clip.to_view && leaves_view(camera.pinhole, p_camera, radius_m)) {
+  Window window = window_of(camera.pinhole, p_camera, radius_m);
+  // With pixels to all sides of it the ball is far from the view's border.
+  const bool amid = window.u0 > 0 && window.v0 > 0 && window.u1 < camera.pinhole.width_px - 1 &&
+                    window.v1 < camera.pinhole.height_px - 1;
+  if (!clip.to_view && !amid && leaves_view(camera.pinhole, p_camera, radius_m)) {
     return true;
   }
-  Window window = window_of(camera.pinhole, p_camera, radius_m);
   window = {std::max(window.u0, 0), std::max(window.v0, 0), std::min(window.u1, camera.pinhole.width_px - 1),
             std::min(window.v1, camera.pinhole.height_px - 1)};
   if (window.u0 > window.u1 || window.v0 > window.v1) {

@@ -18,6 +18,16 @@ constexpr float kNever = -1e30F;
 /// A window of at most so many pixels a side is looked at pixel by pixel; larger ones by blocks first.
 constexpr int kFewPixels = 64;
 constexpr int kFewBlocks = 10;
+/// Columns, and rows, that share vectors.
+constexpr int kFew = 8;
+using FewLanes = hn::CappedTag<float, kFew>;
+
+/// Bit i of the result: lane i.
+HWY_INLINE std::uint32_t few_bits_of(hn::Mask<FewLanes> mask) {
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(FewLanes(), mask, bytes.data());
+  return bytes[0];
+}
 
 /// Columns (or rows) of pixels or of blocks, one an element: the plane through the camera's centre and the border on
 /// the ball's side. n is its normal towards the column.
@@ -29,43 +39,59 @@ struct Sides {
   alignas(64) std::array<float, kRoom> nearest_m;   ///< nor less deep than this
 };
 
-/// Of `count` columns (rounded up to whole vectors) from `first` on, each `size` pixels wide.
-HWY_INLINE void measure(float across_m, float depth_m, float radius_m, float focal_px, float centre_px, int first,
-                        int size, int count, Sides& sides) {
+/// Columns (or rows) of one axis of the image: the ball's centre on that axis, and where they begin.
+struct Lines {
+  V across_m;
+  V per_focal;  ///< 1 / f
+  V step;       ///< how many pixels one of them is wide, over f
+  V size_px;
+  V centre_px;
+};
+
+HWY_INLINE Lines lines_of(float across_m, float focal_px, float centre_px, int size) {
+  const Floats d;
+  return {hn::Set(d, across_m), hn::Set(d, 1.0F / focal_px), hn::Set(d, static_cast<float>(size) / focal_px),
+          hn::Set(d, static_cast<float>(size)), hn::Set(d, centre_px)};
+}
+
+/// One vector of columns, whose numbers are in `column`, to the place `at` of sides.
+HWY_INLINE void measure_vector(const Lines& lines, V column, V z, V radius, std::size_t at, Sides& sides) {
   const Floats d;
   const V zero = hn::Zero(d);
   const V one = hn::Set(d, 1.0F);
-  const V x = hn::Set(d, across_m);
-  const V z = hn::Set(d, depth_m);
-  const V radius = hn::Set(d, radius_m);
-  const V step = hn::Set(d, static_cast<float>(size) / focal_px);
+  const V x = lines.across_m;
+  const V low = hn::Mul(hn::Sub(hn::Mul(column, lines.size_px), lines.centre_px), lines.per_focal);
+  const M beyond = hn::Gt(hn::Mul(low, z), x);
+  const V slope = hn::IfThenElse(beyond, low, hn::Add(low, lines.step));
+  const V cosine = hn::Div(one, hn::Sqrt(hn::Add(one, hn::Mul(slope, slope))));
+  const V off = hn::Mul(hn::Sub(hn::Mul(slope, z), x), cosine);
+  const V distance = hn::IfThenElse(beyond, off, hn::Neg(off));
+  const V tilt = hn::Mul(slope, cosine);
+  const V slant = hn::IfThenElse(beyond, hn::Neg(tilt), tilt);
+  const V square = hn::Sub(hn::Mul(radius, radius), hn::Mul(distance, distance));
+  // The cap of the ball beyond the plane: its pole, or the rim's point that is farthest along the optical axis.
+  const V centre = hn::Mul(distance, slant);
+  const V spread = hn::Mul(hn::Sqrt(hn::Max(square, zero)), cosine);
+  const V pole = hn::Mul(radius, slant);
+  const M inside = hn::Le(distance, zero);
+  const M has_far_pole = hn::Or(inside, hn::Ge(pole, distance));
+  const M has_near_pole = hn::Or(inside, hn::Ge(hn::Neg(pole), distance));
+  const V deepest = hn::Add(z, hn::IfThenElse(has_far_pole, radius, hn::Add(centre, spread)));
+  const V nearest = hn::Add(z, hn::IfThenElse(has_near_pole, hn::Neg(radius), hn::Sub(centre, spread)));
+  const M missed = hn::Gt(distance, radius);
+  hn::Store(distance, d, sides.distance_m.data() + at);
+  hn::Store(slant, d, sides.slant.data() + at);
+  hn::Store(hn::IfThenElse(missed, hn::Set(d, kNever), deepest), d, sides.deepest_m.data() + at);
+  hn::Store(nearest, d, sides.nearest_m.data() + at);
+}
+
+/// Of `count` columns (rounded up to whole vectors) from `first` on.
+HWY_INLINE void measure(const Lines& lines, const ScannedBall& ball, int first, int count, Sides& sides) {
+  const Floats d;
+  const V z = hn::Set(d, ball.z_m);
+  const V radius = hn::Set(d, ball.radius_m);
   for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-    const V column = hn::Add(hn::Iota(d, static_cast<float>(first + i)), zero);
-    const V low = hn::Mul(hn::Sub(hn::Mul(column, hn::Set(d, static_cast<float>(size))), hn::Set(d, centre_px)),
-                          hn::Set(d, 1.0F / focal_px));
-    const M beyond = hn::Gt(hn::Mul(low, z), x);
-    const V slope = hn::IfThenElse(beyond, low, hn::Add(low, step));
-    const V cosine = hn::Div(one, hn::Sqrt(hn::Add(one, hn::Mul(slope, slope))));
-    const V off = hn::Mul(hn::Sub(hn::Mul(slope, z), x), cosine);
-    const V distance = hn::IfThenElse(beyond, off, hn::Neg(off));
-    const V tilt = hn::Mul(slope, cosine);
-    const V slant = hn::IfThenElse(beyond, hn::Neg(tilt), tilt);
-    const V square = hn::Sub(hn::Mul(radius, radius), hn::Mul(distance, distance));
-    // The cap of the ball beyond the plane: its pole, or the rim's point that is farthest along the optical axis.
-    const V centre = hn::Mul(distance, slant);
-    const V spread = hn::Mul(hn::Sqrt(hn::Max(square, zero)), cosine);
-    const V pole = hn::Mul(radius, slant);
-    const M inside = hn::Le(distance, zero);
-    const M has_far_pole = hn::Or(inside, hn::Ge(pole, distance));
-    const M has_near_pole = hn::Or(inside, hn::Ge(hn::Neg(pole), distance));
-    const V deepest = hn::Add(z, hn::IfThenElse(has_far_pole, radius, hn::Add(centre, spread)));
-    const V nearest = hn::Add(z, hn::IfThenElse(has_near_pole, hn::Neg(radius), hn::Sub(centre, spread)));
-    const M missed = hn::Gt(distance, radius);
-    const auto at = static_cast<std::size_t>(i);
-    hn::Store(distance, d, sides.distance_m.data() + at);
-    hn::Store(slant, d, sides.slant.data() + at);
-    hn::Store(hn::IfThenElse(missed, hn::Set(d, kNever), deepest), d, sides.deepest_m.data() + at);
-    hn::Store(nearest, d, sides.nearest_m.data() + at);
+    measure_vector(lines, hn::Iota(d, static_cast<float>(first + i)), z, radius, static_cast<std::size_t>(i), sides);
   }
 }
 
@@ -78,10 +104,11 @@ struct Depths {
 
 /// Lanes in which the ball may meet what is not known free. Indices into the row's depths: at `index` if strided, else
 /// from `index` of the first lane on.
-template <bool kStrided>
-HWY_INLINE M may_meet(const Sides& columns, std::size_t column, const Sides& rows, std::size_t row, V square_radius,
-                      const Depths& depths, I index) {
-  const Floats d;
+template <bool kStrided, class D>
+HWY_INLINE hn::Mask<D> may_meet(D d, const Sides& columns, std::size_t column, const Sides& rows, std::size_t row,
+                                hn::Vec<D> square_radius, const Depths& depths, hn::Vec<hn::RebindToSigned<D>> index) {
+  using V = hn::Vec<D>;   // NOLINT(*-shadow): of this many lanes
+  using M = hn::Mask<D>;  // NOLINT(*-shadow): likewise
   const V zero = hn::Zero(d);
   const auto read = [&](const float* HWY_RESTRICT from) HWY_ATTR {
     if constexpr (kStrided) {
@@ -133,8 +160,8 @@ bool scan_pixels(const LocalCamera& camera, const ScannedBall& ball, const Windo
   const int rows = window.v1 - window.v0 + 1;
   Sides across;  // NOLINT(*-member-init): written before it is read
   Sides down;    // NOLINT(*-member-init): written before it is read
-  measure(ball.x_m, ball.z_m, ball.radius_m, camera.fx, camera.cx, first, 1, count, across);
-  measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, window.v0, 1, rows, down);
+  measure(lines_of(ball.x_m, camera.fx, camera.cx, 1), ball, first, count, across);
+  measure(lines_of(ball.y_m, camera.fy, camera.cy, 1), ball, window.v0, rows, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
   const float* const island_near_m = camera.has_islands ? camera.image->island_near_m.data() : nullptr;
   const float* const island_far_m = camera.has_islands ? camera.image->island_far_m.data() : nullptr;
@@ -145,9 +172,53 @@ bool scan_pixels(const LocalCamera& camera, const ScannedBall& ball, const Windo
                         camera.has_islands ? island_far_m + start : nullptr};
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
       const M met =
-          may_meet<false>(across, static_cast<std::size_t>(i), down, row, square_radius, depths, hn::Zero(Ints()));
+          may_meet<false>(d, across, static_cast<std::size_t>(i), down, row, square_radius, depths, hn::Zero(Ints()));
       for (std::uint32_t bits = hn::AllFalse(d, met) ? 0 : bits_of(met); bits != 0; bits &= bits - 1) {
         if (asked.meets(asked.context, first + i + std::countr_zero(bits), v)) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+/// A window of at most kFew columns and rows, which most are: columns and rows in the same vectors.
+bool scan_few(const LocalCamera& camera, const ScannedBall& ball, Asked asked) {
+  const Floats d;
+  const FewLanes few;
+  const int n = static_cast<int>(hn::Lanes(d));
+  const Window& window = ball.window;
+  // Columns beyond the window have to lie in the image, and may be asked about.
+  const int leftmost = std::min(window.u0, camera.width_px - kFew);
+  const std::ptrdiff_t start = static_cast<std::ptrdiff_t>(window.v0) * camera.width_px + leftmost;
+  Sides sides;  // NOLINT(*-member-init): written before it is read
+  const Lines across = lines_of(ball.x_m, camera.fx, camera.cx, 1);
+  const Lines down = lines_of(ball.y_m, camera.fy, camera.cy, 1);
+  for (int i = 0; i < 2 * kFew; i += n) {
+    const V at = hn::Iota(d, static_cast<float>(i));
+    const M is_column = hn::Lt(at, hn::Set(d, static_cast<float>(kFew)));
+    const auto either = [&](V column, V row) HWY_ATTR { return hn::IfThenElse(is_column, column, row); };
+    const Lines lines{either(across.across_m, down.across_m), either(across.per_focal, down.per_focal),
+                      either(across.step, down.step), across.size_px, either(across.centre_px, down.centre_px)};
+    const V number =
+        hn::Add(at, either(hn::Set(d, static_cast<float>(leftmost)), hn::Set(d, static_cast<float>(window.v0 - kFew))));
+    measure_vector(lines, number, hn::Set(d, ball.z_m), hn::Set(d, ball.radius_m), static_cast<std::size_t>(i), sides);
+  }
+  const auto square_radius = hn::Set(few, ball.radius_m * ball.radius_m);
+  const float* const island_near_m = camera.has_islands ? camera.image->island_near_m.data() + start : nullptr;
+  const float* const island_far_m = camera.has_islands ? camera.image->island_far_m.data() + start : nullptr;
+  for (int v = window.v0; v <= window.v1; ++v) {
+    const int row = v - window.v0;
+    const std::ptrdiff_t behind = static_cast<std::ptrdiff_t>(row) * camera.width_px;
+    const Depths depths{camera.free_m + start + behind, camera.has_islands ? island_near_m + behind : nullptr,
+                        camera.has_islands ? island_far_m + behind : nullptr};
+    for (int i = 0; i < kFew; i += static_cast<int>(hn::Lanes(few))) {
+      const auto met =
+          may_meet<false>(few, sides, static_cast<std::size_t>(i), sides, static_cast<std::size_t>(kFew + row),
+                          square_radius, depths, hn::Zero(hn::RebindToSigned<FewLanes>()));
+      for (std::uint32_t bits = hn::AllFalse(few, met) ? 0 : few_bits_of(met); bits != 0; bits &= bits - 1) {
+        if (asked.meets(asked.context, leftmost + i + std::countr_zero(bits), v)) {
           return true;
         }
       }
@@ -168,8 +239,8 @@ bool scan_blocks(const LocalCamera& camera, const ScannedBall& ball, int level, 
   const int count = whole_vectors(last - i0 + 1);
   Sides across;  // NOLINT(*-member-init): written before it is read
   Sides down;    // NOLINT(*-member-init): written before it is read
-  measure(ball.x_m, ball.z_m, ball.radius_m, camera.fx, camera.cx, i0, 1 << level, count, across);
-  measure(ball.y_m, ball.z_m, ball.radius_m, camera.fy, camera.cy, j0, 1 << level, j1 - j0 + 1, down);
+  measure(lines_of(ball.x_m, camera.fx, camera.cx, 1 << level), ball, i0, count, across);
+  measure(lines_of(ball.y_m, camera.fy, camera.cy, 1 << level), ball, j0, j1 - j0 + 1, down);
   const V square_radius = hn::Set(d, ball.radius_m * ball.radius_m);
   // The texel two levels down covers a block exactly.
   const PyramidLevel& texels = camera.levels[level - 2];
@@ -181,7 +252,7 @@ bool scan_blocks(const LocalCamera& camera, const ScannedBall& ball, int level, 
                         camera.has_islands ? camera.image->second_far_minima_m.data() + start : nullptr};
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
       const I block = hn::Min(hn::Iota(di, i0 + i), hn::Set(di, last));
-      const M met = may_meet<true>(across, static_cast<std::size_t>(i), down, row, square_radius, depths,
+      const M met = may_meet<true>(d, across, static_cast<std::size_t>(i), down, row, square_radius, depths,
                                    hn::ShiftLeft<2>(block));
       for (std::uint32_t bits = hn::AllFalse(d, met) ? 0 : bits_of(met); bits != 0; bits &= bits - 1) {
         const int at = i0 + i + std::countr_zero(bits);
@@ -200,6 +271,9 @@ bool scan_lanes(const LocalCamera& camera, const ScannedBall& ball, bool (*meets
                 const void* context) {
   const Window& window = ball.window;
   const int side = std::max(window.u1 - window.u0, window.v1 - window.v0) + 1;
+  if (side <= kFew) {
+    return scan_few(camera, ball, {meets, context});
+  }
   int level = 0;
   if (side > kFewPixels) {
     level = 2;

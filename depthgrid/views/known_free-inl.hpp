@@ -24,7 +24,8 @@ struct Footprint {
   std::array<I, 3> row;   ///< times the level's width
   int side = 0;           ///< how many of them there are: 1 to 3
   std::size_t level = 0;  ///< index into LocalCamera::texels
-  int last = 0;           ///< pixels between the first and the last, at most
+  int last = 0;           ///< pixels between the first and the last, at most: the same for every instruction set
+  int last_here = 0;      ///< the same of these lanes
 };
 
 HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1, PixelBounds pixels) {
@@ -39,9 +40,11 @@ HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1
   if (last <= 2) {
     const I width = hn::Set(di, camera.width_px);
     Footprint result;
-    result.side = static_cast<int>(last) + 1;
+    // Of pixels one by one it makes no difference how many more the other lanes have.
+    result.side = static_cast<int>(largest) + 1;
     result.level = 0;
     result.last = static_cast<int>(last);
+    result.last_here = static_cast<int>(largest);
     for (int n = 0; n < result.side; ++n) {
       const auto at = static_cast<std::size_t>(n);
       result.column[at] = hn::Min(hn::Add(u0, hn::Set(di, n)), u1);
@@ -58,7 +61,12 @@ HWY_INLINE Footprint footprint(const LocalCamera& camera, I u0, I u1, I v0, I v1
   const I j0 = hn::ShiftRightSame(v0, texels.shift);
   const I i1 = hn::Max(i0, hn::Sub(hn::ShiftRightSame(u1, texels.shift), back));
   const I j1 = hn::Max(j0, hn::Sub(hn::ShiftRightSame(v1, texels.shift), back));
-  return {{i0, i1, i1}, {hn::Mul(j0, width), hn::Mul(j1, width), u0}, 2, level, static_cast<int>(last)};
+  return {{i0, i1, i1},
+          {hn::Mul(j0, width), hn::Mul(j1, width), u0},
+          2,
+          level,
+          static_cast<int>(last),
+          static_cast<int>(largest)};
 }
 
 /// The extremum of a pyramid over a footprint of its texels.
@@ -142,7 +150,7 @@ HWY_INLINE M known_free(const LocalCamera& camera, M asked, const Rectangle& r, 
   }
   constexpr int kFewPixels = 4;
   return hn::Or(free, at.last < kFewPixels
-                          ? free_or_island_pixels(camera, left, u0, u1, v0, v1, at.last + 1, z_low, z_high)
+                          ? free_or_island_pixels(camera, left, u0, u1, v0, v1, at.last_here + 1, z_low, z_high)
                           : in_second_interval(camera, left, at, z_low, z_high));
 }
 
