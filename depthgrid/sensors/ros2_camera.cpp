@@ -8,6 +8,7 @@
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/messages/serialization.hpp"
+#include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
 
 namespace depthgrid::sensors {
