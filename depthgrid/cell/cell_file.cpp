@@ -20,10 +20,24 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 12> kCellKeys{
     "name",   "cameras", "robot", "space", "policies", "v_max_m_s", "smallest_obstacle_m",
     "memory", "ask",     "ages",  "ros2",  "outputs"};
-constexpr std::array<std::string_view, 17> kCameraKeys{
-    "camera_info", "name",   "source",  "recording",           "recorded_as", "repeat",
-    "serial",      "topic",  "rate_hz", "arrival_lag_s",       "rig",         "intrinsics",
-    "pose",        "sensor", "margins", "smallest_obstacle_m", "equal_images"};
+constexpr std::array<std::string_view, 18> kCameraKeys{"camera_info",
+                                                       "name",
+                                                       "source",
+                                                       "recording",
+                                                       "recorded_as",
+                                                       "repeat",
+                                                       "serial",
+                                                       "topic",
+                                                       "rate_hz",
+                                                       "arrival_lag_s",
+                                                       "mirrored",
+                                                       "rig",
+                                                       "intrinsics",
+                                                       "pose",
+                                                       "sensor",
+                                                       "margins",
+                                                       "smallest_obstacle_m",
+                                                       "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<std::string_view, 7> kPoseKeys{"position_m",      "look_at_m", "up",       "rpy_deg",
                                                     "quaternion_xyzw", "frame",     "max_age_s"};
@@ -162,10 +176,20 @@ void read_device(const Section& section, const std::filesystem::path& folder, Ca
     }
     camera.recording = folder / section.text("recording", "a file of its maker's software: .bag, .oni");
     camera.repeat = section.yes("repeat", false);
+    if (camera.source == SourceKind::openni) {
+      constexpr std::array<std::string_view, 2> kWords{"true", "false"};
+      camera.mirrored = section.word("mirrored", kWords,
+                                     "whether its images are mirrored, which OpenNI2 does unless it is told not to: "
+                                     "true, or false; the file does not say it") == "true";
+    } else if (section.has("mirrored")) {
+      section.refuse("mirrored", "says nothing of this recording, remove it");
+    }
     return;
   }
-  if (section.has("repeat")) {
-    section.refuse("repeat", "says nothing of a camera that is there, remove it, or add recording:");
+  for (const std::string_view key : {"repeat", "mirrored"}) {
+    if (section.has(key)) {
+      section.refuse(key, "says nothing of a camera that is there, remove it, or add recording:");
+    }
   }
   camera.device = section.text("serial", "the serial number on the camera: it says which of several it is", "");
   if (camera.source == SourceKind::realsense) {
@@ -178,7 +202,8 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
   camera.source = kind_of(section.word("source", kSources, "where the images come from: recording, simulated, ..."));
   switch (camera.source) {
     case SourceKind::recording:
-      refuse_foreign(section, camera.source, std::array<std::string_view, 3>{"serial", "rate_hz", "arrival_lag_s"});
+      refuse_foreign(section, camera.source,
+                     std::array<std::string_view, 4>{"serial", "rate_hz", "arrival_lag_s", "mirrored"});
       camera.recording = folder / section.text("recording", "the folder that holds a rig.json, or an MCAP file");
       camera.device = section.text("topic", "of the depth images in an MCAP file", "");
       camera.info_topic = section.text("camera_info", "of their calibration in an MCAP file", "");
@@ -187,14 +212,14 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
       break;
     case SourceKind::simulated:
       refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 7>{"camera_info", "serial", "topic", "recording", "recorded_as",
-                                                     "repeat", "arrival_lag_s"});
+                     std::array<std::string_view, 8>{"camera_info", "serial", "topic", "recording", "recorded_as",
+                                                     "repeat", "arrival_lag_s", "mirrored"});
       camera.rate_hz = section.number("rate_hz", {0, 1000, true}, "Hz", "images a second", 30);
       break;
     case SourceKind::ros2:
       refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 7>{"camera_info", "serial", "recording", "recorded_as", "repeat",
-                                                     "rate_hz", "arrival_lag_s"});
+                     std::array<std::string_view, 8>{"camera_info", "serial", "recording", "recorded_as", "repeat",
+                                                     "rate_hz", "arrival_lag_s", "mirrored"});
       camera.device = section.text("topic", "of the depth images, for instance /left/depth/image_rect_raw");
       break;
     default:

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "depthgrid/cell/cell.hpp"
+#include "depthgrid/core/camera.hpp"
 
 namespace depthgrid::cell {
 
@@ -20,5 +23,19 @@ namespace depthgrid::cell {
 
 /// A commented cell file with two RealSense D435 and a Franka Panda, to be edited: what `depthgrid cell new` writes.
 [[nodiscard]] std::string_view example_cell() noexcept;
+
+/// A camera that was found, for such a file.
+struct ExampleCamera {
+  std::string name;
+  std::string source;
+  std::string serial{};                       ///< empty: it does not say one
+  std::optional<PinholeCamera> intrinsics{};  ///< none: left open in the file
+  bool is_calibrated = false;                 ///< the intrinsics are its own
+  std::string sensor{};                       ///< a sensor model; empty: left open in the file
+  std::string comment{};                      ///< what it is
+};
+
+/// The same file with these cameras, if there are any. Poses are yours to fill in.
+[[nodiscard]] std::string example_cell(std::span<const ExampleCamera> cameras);
 
 }  // namespace depthgrid::cell

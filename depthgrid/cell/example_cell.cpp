@@ -1,6 +1,56 @@
+#include <sstream>
+
 #include "depthgrid/cell/cell_file.hpp"
 
 namespace depthgrid::cell {
+namespace {
+
+std::string entry_of(const ExampleCamera& camera) {
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(3);
+  text << "  - name: " << camera.name << "  # " << camera.comment << "\n    source: " << camera.source << '\n';
+  if (!camera.serial.empty()) {
+    text << "    serial: \"" << camera.serial << "\"\n";
+  }
+  if (camera.intrinsics) {
+    const PinholeCamera& image = *camera.intrinsics;
+    const Eigen::Vector2d centre = principal_point_opencv(image);
+    text << "    intrinsics: {width_px: " << image.width_px << ", height_px: " << image.height_px
+         << ", fx_px: " << image.fx_px << ", fy_px: " << image.fy_px << ", cx_px: " << centre.x()
+         << ", cy_px: " << centre.y() << "}"
+         << (camera.is_calibrated ? "   # the camera's own\n" : "   # usual ones of such a camera: calibrate yours\n");
+  } else {
+    text << "    # intrinsics: {width_px: 640, height_px: 480, fx_px: , fy_px: , cx_px: , cy_px: }   # it says none\n";
+  }
+  text
+      << "    pose: {position_m: [1.8, 0, 1.4], look_at_m: [0, 0, 0.5]}   # yours: of the depth imager, in the world\n";
+  text << (camera.sensor.empty() ? "    # sensor: which of docs/sensor-models.md, or margins: {constant_m, ...}\n"
+                                 : "    sensor: " + camera.sensor + "\n");
+  // Both stamp images by a clock of their own (docs/cameras.md).
+  text << "    margins: {translation_m: 0.005, rotation_deg: 0.15"
+       << (camera.source == "realsense" ? "" : ", time_uncertainty_s: 0.1") << "}   # how well the pose is known\n";
+  return text.str();
+}
+
+}  // namespace
+
+std::string example_cell(std::span<const ExampleCamera> cameras) {
+  constexpr std::string_view kBegin = "\ncameras:\n";
+  constexpr std::string_view kEnd = "\nrobot:\n";
+  std::string text(example_cell());
+  if (cameras.empty()) {
+    return text;
+  }
+  std::string entries;
+  for (const ExampleCamera& camera : cameras) {
+    entries += entry_of(camera);
+  }
+  constexpr std::string_view kWhat = "two RealSense D435 and a Franka Panda";
+  text.replace(text.find(kWhat), kWhat.size(), "the cameras that were found, and a Franka Panda");
+  const std::size_t begin = text.find(kBegin) + kBegin.size();
+  return text.replace(begin, text.find(kEnd) - begin, entries);
+}
 
 std::string_view example_cell() noexcept {
   return R"(# A robot cell for depthgrid: two RealSense D435 and a Franka Panda. Every number here is yours to check.

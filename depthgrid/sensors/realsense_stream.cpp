@@ -174,10 +174,10 @@ Owned<Device> Stream::device_of(const StreamRequest& request) {
     Owned<Device> candidate(library_->call(f().create_device, static_cast<const DeviceList*>(list.get()), k),
                             f().delete_device);
     const std::string serial = info_of(*library_, candidate.get(), kSerialNumber);
+    others += (others.empty() ? "" : ", ") + serial + " (" + info_of(*library_, candidate.get(), kName) + ")";
     if (request.serial.empty() ? count == 1 : serial == request.serial) {
       device = std::move(candidate);
     }
-    others += (others.empty() ? "" : ", ") + serial + " (" + info_of(*library_, candidate.get(), kName) + ")";
   }
   if (device == nullptr && request.serial.empty()) {
     fail(count, " RealSense are connected, serial: says which one: ", others);

@@ -22,7 +22,8 @@ struct StreamRequest {
   int width_px = 640;
   int height_px = 480;
   int rate_hz = 30;
-  bool any_size = false;  ///< the first depth stream there is: of a recording
+  bool any_size = false;    ///< the first depth stream there is: of a recording
+  bool only_looks = false;  ///< sets nothing in the device
 };
 
 struct FoundDevice {

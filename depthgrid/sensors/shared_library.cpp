@@ -35,10 +35,8 @@ SharedLibrary::SharedLibrary(std::span<const std::string> names, const std::stri
     }
     const char* const error = ::dlerror();
     const std::string text = error != nullptr ? error : "";
-    // A library that is there and lacks another one is the reason to tell; that a name is not found is not.
-    if (why.empty() && text.find("No such file") == std::string::npos) {
-      why = " (" + printable(text) + ")";
-    } else if (why.empty() && text.find(name + ": cannot open") == std::string::npos) {
+    // That a name is not found says nothing; that a library is there and does not load is the reason.
+    if (why.empty() && !text.starts_with(name + ": cannot open shared object file: No such file")) {
       why = " (" + printable(text) + ")";
     }
   }

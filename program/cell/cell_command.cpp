@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "depthgrid/core/usable_frame.hpp"
 #include "depthgrid/monitor/open_cell.hpp"
 #include "depthgrid/sensors/clock.hpp"
+#include "depthgrid/sensors/found_cameras.hpp"
 #include "program/usage_error.hpp"
 #include "report/number_text.hpp"
 
@@ -163,7 +166,30 @@ void check(const std::string& file) {
   }
 }
 
+/// Which model of docs/sensor-models.md is of it; empty: none by its name.
+std::string sensor_of(const sensors::FoundCamera& camera) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kModels{
+      {{"D415", "realsense_d415"}, {"D435", "realsense_d435"}, {"D455", "realsense_d455"}, {"Kinect", "kinect_v1"}}};
+  for (const auto& [name, model] : kModels) {
+    if (camera.name.find(name) != std::string::npos) {
+      return std::string(model);
+    }
+  }
+  return {};
+}
+
 void write_new(const std::string& file) {
+  const sensors::FoundCameras found = sensors::find_cameras();
+  std::vector<cell::ExampleCamera> cameras;
+  for (const sensors::FoundCamera& camera : found.cameras) {
+    cameras.push_back({.name = "camera" + std::to_string(cameras.size() + 1),
+                       .source = camera.source,
+                       .serial = camera.serial,
+                       .intrinsics = camera.intrinsics,
+                       .is_calibrated = camera.is_calibrated,
+                       .sensor = sensor_of(camera),
+                       .comment = camera.name});
+  }
   // Exclusively: what somebody has written is not written over.
   std::FILE* const out = std::fopen(file.c_str(), "wxe");
   if (out == nullptr) {
@@ -172,12 +198,22 @@ void write_new(const std::string& file) {
                    ? ": is there already, and is not written over: choose another name"
                    : ": cannot be written: is its folder there?");
   }
-  const std::string text(cell::example_cell());
+  const std::string text = cell::example_cell(cameras);
   const bool written = std::fputs(text.c_str(), out) >= 0;
   if (std::fclose(out) != 0 || !written) {
     fail(file, ": cannot be written");
   }
-  say(file + ": written: two RealSense D435 and a Panda; edit it, then depthgrid cell check " + file);
+  for (const sensors::FoundCamera& camera : found.cameras) {
+    say("found " + camera.source + ": " + camera.name + (camera.serial.empty() ? "" : " (" + camera.serial + ")"));
+  }
+  for (const std::string& note : found.notes) {
+    say("not asked: " + note);
+  }
+  if (cameras.empty()) {
+    say("no camera with a driver was found: the cameras in the file are topics of ROS 2, as an example");
+  }
+  say(file + ": written: " + (cameras.empty() ? "two RealSense D435" : std::to_string(cameras.size()) + " cameras") +
+      " and a Panda; edit it, then depthgrid cell check " + file);
 }
 
 }  // namespace

@@ -71,6 +71,35 @@ TEST(CellCameras, ARecordingOfARealSenseIsPlayed) {
   EXPECT_THAT(run.out, ::testing::ContainsRegex("\n  left: [1-9][0-9]* images"));
 }
 
+TEST(CellCameras, ANewFileHoldsThoseThatAreFound) {
+  const TemporaryFolder folder;
+  const CommandResult made =
+      run_command("cell new cell.yaml", folder, kFakeRealSense + std::string("FAKE_REALSENSE_SERIALS='111 222' "));
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("found realsense: Intel RealSense D435 (111)\n"
+                                  "found realsense: Intel RealSense D435 (222)\n"));
+  const std::string text = read_bytes(folder / "cell.yaml");
+  EXPECT_THAT(text, HasSubstr("  - name: camera2  # Intel RealSense D435\n    source: realsense\n    serial: \"222\"\n"
+                              "    intrinsics: {width_px: 640, height_px: 480, fx_px: 385.000, fy_px: 386.000, "
+                              "cx_px: 319.500, cy_px: 239.500}   # the camera's own\n"));
+  edit(folder, "cell.yaml", "urdf: panda.urdf", "urdf: kuka_lwr4");
+  edit(folder, "cell.yaml", "tool: panda_hand", "tool: lwr_7_link");
+  const CommandResult show = run_command("cell show cell.yaml", folder);
+  EXPECT_EQ(show.exit_code, 0) << show.err;
+  EXPECT_THAT(show.out, ::testing::ContainsRegex("cameras.1..serial +222 "));
+}
+
+TEST(CellCameras, WhereNoneIsFoundTheExampleStays) {
+  const TemporaryFolder folder;
+  const CommandResult made =
+      run_command("cell new cell.yaml", folder, "FAKE_REALSENSE_SERIALS='' " + std::string(kFakeRealSense));
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  if (made.out.find("found ") == std::string::npos) {  // this computer may have one of another kind
+    EXPECT_THAT(made.out, HasSubstr("no camera with a driver was found: the cameras in the file are topics of ROS 2"));
+    EXPECT_THAT(read_bytes(folder / "cell.yaml"), HasSubstr("topic: /left/depth/image_rect_raw"));
+  }
+}
+
 TEST(CellCameras, WhatSaysNothingOfADeviceIsRefused) {
   const auto refused = [](const std::string& camera) {
     const TemporaryFolder folder;
@@ -84,6 +113,9 @@ TEST(CellCameras, WhatSaysNothingOfADeviceIsRefused) {
               HasSubstr("serial: says nothing of a recording"));
   EXPECT_THAT(refused("source: freenect\n    recording: a"),
               HasSubstr("recording: says nothing with source: freenect"));
+  EXPECT_THAT(refused("source: openni\n    recording: a.oni"), HasSubstr("'mirrored' is missing"));
+  EXPECT_THAT(refused("source: realsense\n    recording: a.bag\n    mirrored: true"),
+              HasSubstr("mirrored: says nothing of this recording"));
   EXPECT_THAT(refused("source: simulated\n    arrival_lag_s: 0.03"),
               HasSubstr("arrival_lag_s: says nothing with source: simulated"));
 }

@@ -234,7 +234,14 @@ void rs2_delete_device(void* device) {
   count(&FakeCounts::devices, -1);
   delete static_cast<FakeDevice*>(device);
 }
-int rs2_supports_device_info(const void*, int what, void**) { return what == 0 || what == 1 || what == 9 ? 1 : 0; }
+int rs2_supports_device_info(const void* device, int what, void** error) {
+  return guarded(error, [&]() -> int {
+    if (device == nullptr) {
+      throw std::runtime_error("null pointer passed for argument \"dev\"");
+    }
+    return what == 0 || what == 1 || what == 9 ? 1 : 0;
+  });
+}
 const char* rs2_get_device_info(const void* device, int what, void** error) {
   return guarded(error, [&]() -> const char* {
     switch (what) {
