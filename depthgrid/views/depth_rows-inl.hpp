@@ -80,8 +80,9 @@ HWY_INLINE void reduce_row(D d_values, const Reader& reader, const Reduction& re
     const auto value = part.load(d_values, values + u, hn::TFromD<D>{0});
     V result = reduced(reader(value));
     V own = infinite;
-    if (robot_here) {
-      const V near = part.load(d, near_m + u, 0.0F);
+    const V near = robot_here ? part.load(d, near_m + u, 0.0F) : hn::Zero(d);
+    // Beside the robot there is nothing to be read of its far ends, which no cache has.
+    if (!hn::AllFalse(d, hn::Gt(near, hn::Zero(d)))) {
       const V far = part.load(d, far_m + u, 0.0F);
       const V exit = hn::Max(hn::Min(hn::Mul(hn::Add(far, pocket), pocket_rounding), largest), far);
       if (own_limits) {

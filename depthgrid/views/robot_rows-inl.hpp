@@ -53,6 +53,9 @@ HWY_INLINE bool join_robot(const NewImage& image, int v, const PixelRange& colum
   for (int u = columns.begin; u < columns.end; u += n) {
     const int count = width_px - u;
     const V near = load_some(d, near_m + u, count, 0.0F);
+    if (hn::AllFalse(d, hn::Gt(near, hn::Zero(d)))) {
+      continue;
+    }
     const V far = load_some(d, far_m + u, count, 0.0F);
     const V free = load_some(d, free_row_m + u, count, 0.0F);
     // An interval that is not finite, or whose ends are swapped, holds nothing.
