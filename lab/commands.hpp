@@ -18,6 +18,7 @@ void add_growth_command(CLI::App& app);
 void add_pictures_command(CLI::App& app);
 void add_devices_command(CLI::App& app);
 void add_day_command(CLI::App& app);
+void add_latency_command(CLI::App& app);
 void add_workcell_rate_command(CLI::App& workcell);
 void add_workcell_pictures_command(CLI::App& workcell);
 

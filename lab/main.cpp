@@ -38,5 +38,6 @@ int main(int argc, char** argv) {
   add_pictures_command(app);
   add_devices_command(app);
   add_day_command(app);
+  add_latency_command(app);
   return depthgrid::program::run_command_line(app, argc, argv);
 }

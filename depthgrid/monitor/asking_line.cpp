@@ -93,7 +93,12 @@ void AskingLine::look_at_cameras() noexcept {
     CameraBasis& basis = answer_.cameras[k];
     basis.state = cameras_[k]->state();
     basis.without_reading = cameras_[k]->without_reading();
+    const bool is_new_image = image_s > basis.image_s;
     basis.image_s = image_s;
+    // What is not yet told of this image is older than it.
+    if (const double prepared_s = cameras_[k]->prepared_s(); is_new_image && prepared_s > image_s) {
+      histograms_.hand_over.add(std::max(0.0, answer_.time_s - prepared_s));
+    }
     basis.age_s = answer_.time_s - image_s;
     basis.late = !(basis.age_s <= max_image_age_s_);
     if (!basis.late) {

@@ -26,6 +26,7 @@ struct AskingHistograms {
   TimeHistogram asking;
   TimeHistogram period;
   TimeHistogram skew;
+  TimeHistogram hand_over;
   std::array<TimeHistogram, views::kMaxCameras> image_age;
 };
 

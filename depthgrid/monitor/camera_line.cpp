@@ -101,6 +101,14 @@ bool CameraLine::open() noexcept {
   return false;
 }
 
+// Whoever looks at its state has to see that it is gone, not only that its image grows old.
+void CameraLine::has_nothing() noexcept {
+  if ((state() == CameraState::live || state() == CameraState::no_reading) &&
+      sensors::clock_now_s() - heard_s_ > settings_.max_image_age_s) {
+    set_state(CameraState::silent, "no image for longer than images count");
+  }
+}
+
 void CameraLine::has_ended() noexcept {
   if (state() != CameraState::ended) {
     state_.store(CameraState::ended, std::memory_order_relaxed);
@@ -146,6 +154,7 @@ bool CameraLine::is_refused(const sensors::DepthReading& reading, bool is_empty)
 }
 
 void CameraLine::take(const sensors::DepthReading& given) noexcept {
+  heard_s_ = sensors::clock_now_s();
   sensors::DepthReading reading = given;
   reading.time_s = sensors::seconds_of(sensors::nanoseconds_of(given.time_s));  // as a recording holds it
   count(counters_.skipped, reading.skipped);
@@ -156,6 +165,7 @@ void CameraLine::take(const sensors::DepthReading& given) noexcept {
     return;
   }
   const double begin_s = sensors::clock_now_s();
+  receipt_.add(begin_s - reading.time_s);
   const Pose T_world_camera = reading.T_world_camera ? recordable(*reading.T_world_camera) : camera_.T_world_camera;
   robot::JointMoment known;
   Frame frame{reading.depth, {}, reading.time_s};
@@ -168,10 +178,12 @@ void CameraLine::take(const sensors::DepthReading& given) noexcept {
                      known.samples > 0 ? known.newest_s : Proximity::kNaN);
   }
   const FrameUpdate update = evaluator_.update(settings_.camera, frame, T_world_camera);
-  preparation_.add(sensors::clock_now_s() - begin_s);
+  const double end_s = sensors::clock_now_s();
+  preparation_.add(end_s - begin_s);
   switch (update.result) {
     case UpdateResult::taken:
       count(counters_.taken);
+      prepared_s_.store(end_s, std::memory_order_relaxed);
       without_reading_.store(share, std::memory_order_relaxed);
       share < 1 ? set_state(CameraState::live, "its images are used again")
                 : set_state(CameraState::no_reading, "its image shows nothing: no pixel has a reading");

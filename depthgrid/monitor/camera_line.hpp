@@ -55,6 +55,9 @@ class CameraLine {
   [[nodiscard]] CameraState state() const noexcept { return state_.load(std::memory_order_relaxed); }
   [[nodiscard]] double without_reading() const noexcept { return without_reading_.load(std::memory_order_relaxed); }
   [[nodiscard]] SourceCounts counts() const noexcept { return counters_.now(); }
+  /// When the image that is used was there to be asked; NaN: none was.
+  [[nodiscard]] double prepared_s() const noexcept { return prepared_s_.load(std::memory_order_relaxed); }
+  [[nodiscard]] const TimeHistogram& receipt() const noexcept { return receipt_; }
   [[nodiscard]] const TimeHistogram& preparation() const noexcept { return preparation_; }
   [[nodiscard]] EventQueue& events() noexcept { return events_; }
 
@@ -63,6 +66,7 @@ class CameraLine {
   friend void follow(Source& source, Reading reading, Line& line, const std::stop_token& stop) noexcept;
   [[nodiscard]] bool open() noexcept;
   void take(const sensors::DepthReading& given) noexcept;
+  void has_nothing() noexcept;
   void has_ended() noexcept;
   void has_failed() noexcept;
   [[nodiscard]] bool is_refused(const sensors::DepthReading& reading, bool is_empty) noexcept;
@@ -81,7 +85,10 @@ class CameraLine {
   DepthImage measured_m_;
   EventQueue events_;
   SourceCounters counters_;
+  TimeHistogram receipt_;
   TimeHistogram preparation_;
+  double heard_s_ = 0;  ///< when it gave an image last, or was opened
+  std::atomic<double> prepared_s_{Proximity::kNaN};
   std::atomic<CameraState> state_{CameraState::opening};
   std::atomic<double> without_reading_{Proximity::kNaN};
 };

@@ -35,6 +35,8 @@ std::string_view words_of(CameraState state) noexcept {
       return "is lost";
     case CameraState::ended:
       return "is at the end of its recording";
+    case CameraState::silent:
+      return "is silent";
   }
   return "?";
 }
@@ -101,6 +103,8 @@ std::string_view to_string(CameraState state) noexcept {
       return "failed";
     case CameraState::ended:
       return "ended";
+    case CameraState::silent:
+      return "silent";
   }
   return "invalid";
 }

@@ -27,6 +27,7 @@ enum class CameraState : std::uint8_t {
   frozen,       ///< it repeats the same pixels with new times: refused
   failed,       ///< lost; it is opened again after a while
   ended,        ///< a recording is at its end
+  silent,       ///< open, and no image for longer than images count
 };
 
 /// "opening", "waiting", "live", ...

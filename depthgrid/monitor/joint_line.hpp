@@ -37,6 +37,7 @@ class JointLine {
   friend void follow(Source& source, Reading reading, Line& line, const std::stop_token& stop) noexcept;
   [[nodiscard]] bool open() noexcept;
   void take(const sensors::JointReading& reading) noexcept;
+  void has_nothing() noexcept {}  // their age says it
   void has_ended() noexcept;
   void has_failed() noexcept;
   void tell(EventKind kind, std::string_view words) noexcept;

@@ -275,6 +275,9 @@ const TimeHistogram& Monitor::skew() const noexcept { return state_->asking->his
 const TimeHistogram& Monitor::image_age(std::size_t camera) const {
   return state_->asking->histograms().image_age.at(camera);
 }
+const TimeHistogram& Monitor::receipt(std::size_t camera) const { return state_->cameras.at(camera)->receipt(); }
+const TimeHistogram& Monitor::hand_over() const noexcept { return state_->asking->histograms().hand_over; }
+const TimeHistogram& Monitor::sending(std::size_t output) const { return state_->outputs.at(output)->sending(); }
 const TimeHistogram& Monitor::preparation(std::size_t camera) const {
   return state_->cameras.at(camera)->preparation();
 }

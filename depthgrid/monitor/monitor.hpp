@@ -103,8 +103,14 @@ class Monitor {
   [[nodiscard]] const TimeHistogram& skew() const noexcept;
   /// Of the camera's image, at every question.
   [[nodiscard]] const TimeHistogram& image_age(std::size_t camera) const;
+  /// From the middle of the camera's exposure to the image at hand, of those that are used.
+  [[nodiscard]] const TimeHistogram& receipt(std::size_t camera) const;
   /// From the image at hand to the image that can be asked.
   [[nodiscard]] const TimeHistogram& preparation(std::size_t camera) const;
+  /// From an image that can be asked to the question that asks it, of all cameras.
+  [[nodiscard]] const TimeHistogram& hand_over() const noexcept;
+  /// From an answer to its output's being done with it; outputs in the order in which they were added.
+  [[nodiscard]] const TimeHistogram& sending(std::size_t output) const;
 
  private:
   struct State;

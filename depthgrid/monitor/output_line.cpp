@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "depthgrid/sensors/clock.hpp"
+
 namespace depthgrid::monitor {
 namespace {
 
@@ -51,6 +53,7 @@ void OutputLine::run(const std::stop_token& stop) noexcept {
     newest_ = answer.sequence;
     try {
       output_->take(answer);
+      sending_.add(sensors::clock_now_s() - answer.done_s);
     } catch (...) {  // an output that fails must not end the others; what failed it has to say itself
       passed_over_.fetch_add(1, std::memory_order_relaxed);
     }

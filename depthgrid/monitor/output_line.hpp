@@ -11,6 +11,7 @@
 #include "depthgrid/core/triple_buffer.hpp"
 #include "depthgrid/monitor/cell_answer.hpp"
 #include "depthgrid/monitor/monitor.hpp"
+#include "depthgrid/monitor/time_histogram.hpp"
 
 namespace depthgrid::monitor {
 
@@ -27,6 +28,8 @@ class OutputLine {
   /// Until it is told to stop.
   void run(const std::stop_token& stop) noexcept;
 
+  /// From the answer to the output's being done with it.
+  [[nodiscard]] const TimeHistogram& sending() const noexcept { return sending_; }
   [[nodiscard]] std::uint64_t passed_over() const noexcept { return passed_over_.load(std::memory_order_relaxed); }
 
  private:
@@ -34,6 +37,7 @@ class OutputLine {
   TripleBuffer<CellAnswer> answers_;
   sem_t there_is_one_{};
   std::uint64_t newest_ = 0;
+  TimeHistogram sending_;
   std::atomic<std::uint64_t> passed_over_{0};
 };
 

@@ -26,8 +26,8 @@ inline constexpr double kSourceSlice_s = 0.05;
 /// Sleeps for that long, or until it is told to stop.
 void wait_s(double seconds, const std::stop_token& stop) noexcept;
 
-/// Until it is told to stop. `line` has open(), which says whether it is open, take(reading), has_ended(), and
-/// has_failed(); these do not throw.
+/// Until it is told to stop. `line` has open(), which says whether it is open, take(reading), has_nothing(),
+/// has_ended(), and has_failed(); these do not throw.
 template <class Source, class Reading, class Line>
 void follow(Source& source, Reading reading, Line& line, const std::stop_token& stop) noexcept {
   Backoff backoff;
@@ -46,6 +46,7 @@ void follow(Source& source, Reading reading, Line& line, const std::stop_token& 
         backoff.reset();
         break;
       case sensors::Reading::nothing:
+        line.has_nothing();
         break;
       case sensors::Reading::ended:
         line.has_ended();

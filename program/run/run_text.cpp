@@ -101,6 +101,7 @@ std::string summary(const monitor::Monitor& monitor, const std::vector<std::stri
   for (std::size_t k = 0; k < report.cameras.size(); ++k) {
     text += "  " + names.cameras[k] + ": " + counts(report.cameras[k], "images") + "\n";
     text += "    age of its image        " + spread(monitor.image_age(k)) + "\n";
+    text += "    receipt                 " + spread(monitor.receipt(k)) + "\n";
     text += "    preparation             " + spread(monitor.preparation(k)) + "\n";
   }
   if (report.joints.opened > 0) {

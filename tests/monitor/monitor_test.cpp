@@ -140,7 +140,7 @@ TEST(Monitor, AnswersStandOnTheirImages) {
 const char* words_of(Fault fault) {
   switch (fault) {
     case Fault::drop:
-      return "camera front is live, its image is ";
+      return "camera front is silent, its image is ";
     case Fault::delay:
     case Fault::wrong_clock:
     case Fault::slow_clock:

@@ -172,7 +172,7 @@ TEST(Ros2Cell, AnswersFromTopicsAndSaysWhichCameraIsSilent) {
     for (const messages::Distance& part : now.distances) {
       said = part.reason.empty() ? said : part.reason;
     }
-    return said.find("camera front is live, its image is ") != std::string::npos && now.image_ages[0] > 0.35;
+    return said.find("camera front is silent, its image is ") != std::string::npos && now.image_ages[0] > 0.35;
   })) << said;
   driver.holds_back[0] = false;
   EXPECT_TRUE(becomes(is_well));
