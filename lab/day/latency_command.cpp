@@ -81,6 +81,9 @@ class Controller {
     constexpr int kWait_ms = 50;
     std::array<unsigned char, 2048> bytes{};
     double exposure_s = 0;
+    // What waits in the socket is of the time before.
+    while (::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT) >= 0) {
+    }
     while (!stop.stop_requested()) {
       pollfd wait{.fd = socket_, .events = POLLIN, .revents = 0};
       if (::poll(&wait, 1, kWait_ms) != 1) {
