@@ -113,7 +113,7 @@ std::string CellRecording::damage() const {
            {"dropped_images", " images"}, {"dropped_joint_states", " joint states"}, {"dropped_answers", " answers"}}) {
     const std::string count = text_of(end->second, key);
     if (!count.empty() && count != "0") {
-      words += (words.empty() ? "" : "; ") + count + what + " were dropped when it was recorded";
+      words.append(words.empty() ? "" : "; ").append(count).append(what).append(" were dropped when it was recorded");
     }
   }
   return words;
