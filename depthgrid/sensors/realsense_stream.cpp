@@ -171,12 +171,17 @@ Owned<Device> Stream::device_of(const StreamRequest& request) {
   std::string others;
   Owned<Device> device(nullptr, f().delete_device);
   for (int k = 0; k < count; ++k) {
-    Owned<Device> candidate(library_->call(f().create_device, static_cast<const DeviceList*>(list.get()), k),
-                            f().delete_device);
-    const std::string serial = info_of(*library_, candidate.get(), kSerialNumber);
-    others += (others.empty() ? "" : ", ") + serial + " (" + info_of(*library_, candidate.get(), kName) + ")";
-    if (request.serial.empty() ? count == 1 : serial == request.serial) {
-      device = std::move(candidate);
+    others += others.empty() ? "" : ", ";
+    try {
+      Owned<Device> candidate(library_->call(f().create_device, static_cast<const DeviceList*>(list.get()), k),
+                              f().delete_device);
+      const std::string serial = info_of(*library_, candidate.get(), kSerialNumber);
+      others += serial + " (" + info_of(*library_, candidate.get(), kName) + ")";
+      if (request.serial.empty() ? count == 1 : serial == request.serial) {
+        device = std::move(candidate);
+      }
+    } catch (const Error& error) {  // another one that another program holds is no reason not to open this one
+      others += std::string("one that does not open (") + error.what() + ")";
     }
   }
   if (device == nullptr && request.serial.empty()) {

@@ -220,11 +220,17 @@ int rs2_device_list_contains(const void* list, const void* device, void**) {
   const auto& serials = static_cast<const FakeList*>(list)->serials;
   return std::count(serials.begin(), serials.end(), static_cast<const FakeDevice*>(device)->serial) > 0 ? 1 : 0;
 }
-void* rs2_create_device(const void* list, int index, void**) {
-  count(&FakeCounts::devices, 1);
-  auto* device = new FakeDevice;
-  device->serial = static_cast<const FakeList*>(list)->serials.at(static_cast<std::size_t>(index));
-  return device;
+void* rs2_create_device(const void* list, int index, void** error) {
+  return guarded(error, [&]() -> void* {
+    const std::string serial = static_cast<const FakeList*>(list)->serials.at(static_cast<std::size_t>(index));
+    if (serial == now().held) {
+      throw std::runtime_error("Device or resource busy");
+    }
+    count(&FakeCounts::devices, 1);
+    auto* device = new FakeDevice;
+    device->serial = serial;
+    return device;
+  });
 }
 void rs2_delete_device_list(void* list) {
   count(&FakeCounts::lists, -1);

@@ -9,6 +9,7 @@ namespace depthgrid::test {
 /// What the devices are and do. Tests set it while no stream runs, but for the fields that say otherwise.
 struct FakeRealSense {
   std::vector<std::string> serials{"941322070001"};
+  std::string held;              ///< serial number of one that another program holds
   int domain = 2;                ///< of stamps: global time; also while it runs
   bool has_metadata = true;      ///< of the exposure
   long exposure_us = 8000;       // NOLINT(*runtime-int): as of 64 bits

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdarg>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <thread>
@@ -10,6 +11,21 @@
 #define XN_DELETE(pointer) delete (pointer)
 
 #include <Driver/OniDriverAPI.h>
+#include <OniCAPI.h>
+
+#include "depthgrid/sensors/openni_library.hpp"
+
+// What the source declares of OpenNI2 is as OpenNI2 declares it.
+namespace oni_here = depthgrid::sensors::oni;
+static_assert(oni_here::kVersion == ONI_API_VERSION);
+static_assert(sizeof(oni_here::Frame) == sizeof(OniFrame));
+static_assert(offsetof(oni_here::Frame, timestamp_us) == offsetof(OniFrame, timestamp));
+static_assert(offsetof(oni_here::Frame, mode) == offsetof(OniFrame, videoMode));
+static_assert(offsetof(oni_here::Frame, stride) == offsetof(OniFrame, stride));
+static_assert(sizeof(oni_here::DeviceInfo) == sizeof(OniDeviceInfo));
+static_assert(sizeof(oni_here::VideoMode) == sizeof(OniVideoMode));
+static_assert(sizeof(oni_here::SensorInfo) == sizeof(OniSensorInfo));
+static_assert(sizeof(oni_here::DeviceCallbacks) == sizeof(OniDeviceCallbacks));
 
 // NOLINTBEGIN: the shape of a driver is OpenNI2's.
 

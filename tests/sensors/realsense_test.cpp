@@ -182,6 +182,22 @@ TEST_F(RealSense, WhichOneItIsHasToBeKnown) {
   EXPECT_EQ(source->info().serial, "222");
 }
 
+TEST_F(RealSense, OneThatAnotherProgramHoldsDoesNotKeepTheOthersFromOpening) {
+  is([](FakeRealSense& fake) {
+    fake.serials = {"111", "222"};
+    fake.held = "111";
+  });
+  RealSenseSettings settings;
+  settings.serial = "222";
+  const auto source = camera(settings);
+  source->open();
+  EXPECT_EQ(source->info().serial, "222");
+  settings.serial = "111";
+  EXPECT_EQ(thrown_message([&] { camera(settings)->open(); }),
+            "no RealSense with serial number 111 is connected, there are one that does not open (librealsense2: Device "
+            "or resource busy), 222 (Intel RealSense D435)");
+}
+
 TEST_F(RealSense, ASizeThatItHasNotIsRefusedWithThoseThatItHas) {
   RealSenseSettings settings;
   settings.width_px = 641;
