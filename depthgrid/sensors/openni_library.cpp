@@ -5,15 +5,6 @@
 #include "depthgrid/sensors/shared_library.hpp"
 
 namespace depthgrid::sensors {
-namespace {
-
-/// OpenNI2 begins and ends once at a time.
-std::mutex& openni_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-}  // namespace
 
 OpenniLibrary::OpenniLibrary(const std::vector<std::string>& names) {
   const SharedLibrary library(names, "install OpenNI2 (Debian: libopenni2-0)");
@@ -48,12 +39,13 @@ OpenniLibrary::OpenniLibrary(const std::vector<std::string>& names) {
 
 std::shared_ptr<const OpenniLibrary> OpenniLibrary::shared() {
   static std::mutex mutex;
-  static std::shared_ptr<const OpenniLibrary> library;
+  // Never destroyed: its drivers' threads may run when the program ends.
+  static auto* const library = new std::shared_ptr<const OpenniLibrary>();  // NOLINT(*owning-memory)
   const std::scoped_lock lock(mutex);
-  if (library == nullptr) {
-    library = std::make_shared<const OpenniLibrary>(std::vector<std::string>{"libOpenNI2.so.0", "libOpenNI2.so"});
+  if (*library == nullptr) {
+    *library = std::make_shared<const OpenniLibrary>(std::vector<std::string>{"libOpenNI2.so.0", "libOpenNI2.so"});
   }
-  return library;
+  return *library;
 }
 
 void OpenniLibrary::check(int status, const char* what) const {
@@ -70,29 +62,32 @@ void OpenniLibrary::check(int status, const char* what) const {
        text.empty() ? "status " + std::to_string(status) : printable(text).substr(0, kLongest));
 }
 
-OpenniSession::OpenniSession(std::shared_ptr<const OpenniLibrary> library) : library_(std::move(library)) {
-  const oni::Functions& f = library_->functions();
-  const std::scoped_lock lock(openni_mutex());
-  (void)f.log_to_console(0);
-  (void)f.log_to_file(0);
-  library_->check(f.initialize(oni::kVersion), "does not begin");
+OpenniLibrary::~OpenniLibrary() {
+  if (has_begun_) {
+    functions_.shutdown();
+  }
+}
+
+void OpenniLibrary::begin() const {
+  const std::scoped_lock lock(mutex_);
+  if (has_begun_) {
+    return;
+  }
+  (void)functions_.log_to_console(0);
+  (void)functions_.log_to_file(0);
+  check(functions_.initialize(oni::kVersion), "does not begin");
+  has_begun_ = true;
   // Its settings file may have switched them on.
-  (void)f.log_to_console(0);
-  (void)f.log_to_file(0);
+  (void)functions_.log_to_console(0);
+  (void)functions_.log_to_file(0);
 }
 
-OpenniSession::~OpenniSession() {
-  const std::scoped_lock lock(openni_mutex());
-  library_->functions().shutdown();
-}
-
-std::vector<oni::DeviceInfo> OpenniSession::devices() const {
-  const oni::Functions& f = library_->functions();
+std::vector<oni::DeviceInfo> OpenniLibrary::devices() const {
   oni::DeviceInfo* list = nullptr;
   int count = 0;
-  library_->check(f.get_device_list(&list, &count), "does not list its devices");
+  check(functions_.get_device_list(&list, &count), "does not list its devices");
   std::vector<oni::DeviceInfo> devices(list, list + count);
-  (void)f.release_device_list(list);
+  (void)functions_.release_device_list(list);
   return devices;
 }
 

@@ -111,31 +111,26 @@ class OpenniLibrary {
  public:
   /// Throws Error.
   explicit OpenniLibrary(const std::vector<std::string>& names);
+  ~OpenniLibrary();
+  OpenniLibrary(const OpenniLibrary&) = delete;
+  OpenniLibrary& operator=(const OpenniLibrary&) = delete;
 
-  /// One for all cameras; loaded with the first call. Throws Error.
+  /// One for all cameras; loaded with the first call, and there until the program ends. Throws Error.
   [[nodiscard]] static std::shared_ptr<const OpenniLibrary> shared();
 
   [[nodiscard]] const oni::Functions& functions() const noexcept { return functions_; }
+  /// Begins OpenNI2, whose drivers look for devices from then on; once, because each time costs memory that it never
+  /// gives back. It ends with this object. Throws Error.
+  void begin() const;
+  /// What its drivers have found since begin(). Throws Error.
+  [[nodiscard]] std::vector<oni::DeviceInfo> devices() const;
   /// Throws Error with the library's words unless `status` is kOk.
   void check(int status, const char* what) const;
 
  private:
   oni::Functions functions_;
-};
-
-/// OpenNI2 begun: its drivers look for devices as long as one of these lives.
-class OpenniSession {
- public:
-  explicit OpenniSession(std::shared_ptr<const OpenniLibrary> library);
-  ~OpenniSession();
-  OpenniSession(const OpenniSession&) = delete;
-  OpenniSession& operator=(const OpenniSession&) = delete;
-
-  [[nodiscard]] const OpenniLibrary& library() const noexcept { return *library_; }
-  [[nodiscard]] std::vector<oni::DeviceInfo> devices() const;
-
- private:
-  std::shared_ptr<const OpenniLibrary> library_;
+  mutable std::mutex mutex_;
+  mutable bool has_begun_ = false;
 };
 
 }  // namespace depthgrid::sensors

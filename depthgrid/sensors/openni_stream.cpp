@@ -41,10 +41,11 @@ std::string name_of(const DeviceInfo& info) {
   return vendor + (vendor.empty() ? "" : " ") + words_of(info.name);
 }
 
-std::vector<FoundDevice> found_by(const OpenniSession& session) {
-  const Functions& f = session.library().functions();
+std::vector<FoundDevice> found_by(const OpenniLibrary& library) {
+  library.begin();
+  const Functions& f = library.functions();
   std::vector<FoundDevice> found;
-  for (const DeviceInfo& info : session.devices()) {
+  for (const DeviceInfo& info : library.devices()) {
     const std::string uri(info.uri.data(), ::strnlen(info.uri.data(), info.uri.size()));
     Device device = nullptr;
     std::string serial;
@@ -70,12 +71,11 @@ std::string modes_text(const SensorInfo* sensor) {
 
 }  // namespace
 
-std::vector<FoundDevice> connected(const std::shared_ptr<const OpenniLibrary>& library) {
-  return found_by(OpenniSession(library));
-}
+std::vector<FoundDevice> connected(const std::shared_ptr<const OpenniLibrary>& library) { return found_by(*library); }
 
 DepthStream::DepthStream(std::shared_ptr<const OpenniLibrary> library, const StreamRequest& request)
-    : library_(std::move(library)), session_(library_), is_recording_(!request.file.empty()) {
+    : library_(std::move(library)), is_recording_(!request.file.empty()) {
+  library_->begin();
   // The destructor does not run where this throws.
   const auto undo = [](DepthStream* self) { self->close(); };
   std::unique_ptr<DepthStream, decltype(undo)> guard(this, undo);
@@ -122,7 +122,7 @@ void DepthStream::close() noexcept {
 }
 
 std::string DepthStream::uri_of(const StreamRequest& request) const {
-  const std::vector<FoundDevice> found = found_by(session_);
+  const std::vector<FoundDevice> found = found_by(*library_);
   if (found.empty()) {
     fail("no device of OpenNI2 is connected");
   }

@@ -63,7 +63,6 @@ class DepthStream {
   static void on_disconnected(const DeviceInfo* info, void* stream) noexcept;
 
   std::shared_ptr<const OpenniLibrary> library_;
-  OpenniSession session_;
   bool is_recording_;
   std::string uri_;
   std::atomic<bool> is_gone_{false};

@@ -229,14 +229,17 @@ bool TestDriver::is_there_[2] = {true, false};
 
 extern "C" {
 void test_openni_there(int first, int second) {
-  TestDriver::is_there_[0] = first != 0;
-  TestDriver::is_there_[1] = second != 0;
+  const bool wanted[2] = {first != 0, second != 0};
+  for (int which = 0; which < 2; ++which) {
+    const bool was = TestDriver::is_there_[which];
+    TestDriver::is_there_[which] = wanted[which];
+    if (driver != nullptr && was != wanted[which]) {
+      was ? driver->unplug(which) : driver->plug(which);
+    }
+  }
 }
 void test_openni_unplug(int which) {
-  TestDriver::is_there_[which] = false;
-  if (driver != nullptr) {
-    driver->unplug(which);
-  }
+  test_openni_there(which != 0 && TestDriver::is_there_[0], which != 1 && TestDriver::is_there_[1]);
 }
 void test_openni_silent(int silent) { is_silent = silent != 0; }
 void test_openni_registered(int is) { registered = is; }
