@@ -3,7 +3,9 @@
 # than others. The stamp of depthgrid_installed says when all of them were last built together.
 set(depthgrid_before_install "${CMAKE_CURRENT_BINARY_DIR}/build_before_install-$<CONFIG>.cmake")
 set(depthgrid_installed_stamp "${CMAKE_CURRENT_BINARY_DIR}/depthgrid_installed.stamp")
-install(SCRIPT "${depthgrid_before_install}" ALL_COMPONENTS)
+if(NOT SKBUILD)  # a Python package has the module alone
+  install(SCRIPT "${depthgrid_before_install}" ALL_COMPONENTS)
+endif()
 
 # depthgrid_build_before_install(TARGETS library... command FILES made while building...): all that an installation copies
 # out of the build. Makes the target depthgrid_installed, a part of a whole build.
