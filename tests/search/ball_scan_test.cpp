@@ -213,5 +213,36 @@ TEST(Balls, MeetWhatOneOfThePixelsHasNotFree) {
   EXPECT_TRUE((met > 100 && passed > 100 && large > 20) || run.count < 100) << met << ", " << passed << ", " << large;
 }
 
+/// Where what lies outside of the image counts, however little of the ball does and at whichever side.
+TEST(Balls, MeetWhatLiesOutsideOfTheImage) {
+  const test::RandomRun run = test::random_run(100);
+  int left = 0;
+  for (std::int64_t n = 0; n < run.count && !testing::Test::HasFailure(); ++n) {
+    const test::RandomRun again{run.seed + static_cast<std::uint64_t>(n), 1};
+    SCOPED_TRACE(again.reproduce());
+    Random random(again.seed);
+    const Scene scene(random);
+    const PinholeCamera& c = scene.pinhole();
+    for (int i = 0; i < 40; ++i) {
+      const double z_m = random.uniform(0.7, 1.5);
+      const double radius_m = random.uniform(0.002, 0.05);
+      const bool across = random.chance(0.5);
+      const bool first = random.chance(0.5);
+      // A border's plane x = s z, and a place within reach of it near some row, or column.
+      const double slope =
+          across ? ((first ? 0 : c.width_px) - c.cx_px) / c.fx_px : ((first ? 0 : c.height_px) - c.cy_px) / c.fy_px;
+      const double in_m = random.uniform(0, 0.99) * radius_m * std::sqrt(1 + slope * slope) * (first ? 1 : -1);
+      const double along = random.uniform(0.3, 0.7);
+      const double other =
+          across ? (along * c.height_px - c.cy_px) / c.fy_px : (along * c.width_px - c.cx_px) / c.fx_px;
+      const Vector3d p =
+          across ? Vector3d(slope * z_m + in_m, other * z_m, z_m) : Vector3d(other * z_m, slope * z_m + in_m, z_m);
+      EXPECT_TRUE(meets_not_known_free(scene.local(), Clip{}, p, radius_m)) << p.transpose() << ", " << radius_m;
+      ++left;
+    }
+  }
+  EXPECT_GT(left, 0);
+}
+
 }  // namespace
 }  // namespace depthgrid::search
