@@ -209,14 +209,13 @@ bool scan_few(const LocalCamera& camera, const ScannedBall& ball, Asked asked) {
   const float* const island_near_m = camera.has_islands ? camera.image->island_near_m.data() + start : nullptr;
   const float* const island_far_m = camera.has_islands ? camera.image->island_far_m.data() + start : nullptr;
   for (int v = window.v0; v <= window.v1; ++v) {
-    const int row = v - window.v0;
-    const std::ptrdiff_t behind = static_cast<std::ptrdiff_t>(row) * camera.width_px;
+    const auto row = static_cast<std::size_t>(v - window.v0);
+    const std::ptrdiff_t behind = static_cast<std::ptrdiff_t>(v - window.v0) * camera.width_px;
     const Depths depths{camera.free_m + start + behind, camera.has_islands ? island_near_m + behind : nullptr,
                         camera.has_islands ? island_far_m + behind : nullptr};
     for (int i = 0; i < kFew; i += static_cast<int>(hn::Lanes(few))) {
-      const auto met =
-          may_meet<false>(few, sides, static_cast<std::size_t>(i), sides, static_cast<std::size_t>(kFew + row),
-                          square_radius, depths, hn::Zero(hn::RebindToSigned<FewLanes>()));
+      const auto met = may_meet<false>(few, sides, static_cast<std::size_t>(i), sides, kFew + row, square_radius,
+                                       depths, hn::Zero(hn::RebindToSigned<FewLanes>()));
       for (std::uint32_t bits = hn::AllFalse(few, met) ? 0 : few_bits_of(met); bits != 0; bits &= bits - 1) {
         if (asked.meets(asked.context, leftmost + i + std::countr_zero(bits), v)) {
           return true;
