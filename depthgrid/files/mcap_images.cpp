@@ -93,6 +93,15 @@ auto in_context(const std::string& where, const Action& action) {
   }
 }
 
+/// What is stated of a camera in place of the file is of one camera.
+void check_statement(const McapChoice& choice, std::size_t cameras, const std::string& name) {
+  const bool of_one = choice.intrinsics || choice.T_world_camera || !choice.info_topic.empty();
+  if (of_one && (cameras != 1 || !choice.rig.empty())) {
+    fail_choice(name, ": calibration, place or camera_info is stated of one camera, and ", cameras, " are chosen",
+                choice.rig.empty() ? "" : ", with a rig file");
+  }
+}
+
 }  // namespace
 
 McapImages::McapImages(const std::filesystem::path& file, const McapChoice& choice,
@@ -132,11 +141,7 @@ McapImages::McapImages(const std::filesystem::path& file, const McapChoice& choi
     }
     validate(rig_file_.rig);
   }
-  const bool of_one = choice.intrinsics || choice.T_world_camera || !choice.info_topic.empty();
-  if (of_one && (topics_.size() != 1 || !choice.rig.empty())) {
-    fail_choice(name_, ": calibration, place or camera_info is stated of one camera, and ", topics_.size(),
-                " are chosen", choice.rig.empty() ? "" : ", with a rig file");
-  }
+  check_statement(choice, topics_.size(), name_);
   rig_file_.count_stated = false;
   rig_file_.simultaneous = true;  // what the time stamps say
   rig_file_.rate_hz.reset();
@@ -216,6 +221,24 @@ bool McapImages::holds_depth(const McapChannel& channel) {
   });
 }
 
+std::vector<McapImages::Topic> McapImages::depth_topics() {
+  std::vector<Topic> found;
+  for (const McapChannel& channel : reader_.channels()) {
+    // A recorder that began anew makes a channel of a topic that has one.
+    const auto is_same = [&](const Topic& topic) {
+      return topic.channel->topic == channel.topic && topic.channel->type == channel.type;
+    };
+    if (std::none_of(found.begin(), found.end(), is_same) && holds_depth(channel)) {
+      found.push_back({.channel = &channel,
+                       .camera_id = camera_id_of(channel.topic),
+                       .compressed = {},
+                       .frame_id = {},
+                       .images = {}});
+    }
+  }
+  return found;
+}
+
 std::vector<McapImages::Topic> McapImages::find_topics(const McapChoice& choice) {
   std::vector<Topic> found;
   for (const std::string& given : choice.depth_topics) {
@@ -230,18 +253,7 @@ std::vector<McapImages::Topic> McapImages::find_topics(const McapChoice& choice)
     found.push_back(std::move(topic));
   }
   if (choice.depth_topics.empty()) {
-    for (const McapChannel& channel : reader_.channels()) {
-      const auto is_known = [&](const Topic& topic) {
-        return topic.channel->topic == channel.topic && topic.channel->type == channel.type;
-      };
-      if (std::none_of(found.begin(), found.end(), is_known) && holds_depth(channel)) {
-        found.push_back({.channel = &channel,
-                         .camera_id = camera_id_of(channel.topic),
-                         .compressed = {},
-                         .frame_id = {},
-                         .images = {}});
-      }
-    }
+    found = depth_topics();
     const auto is_called_depth = [](const Topic& t) { return t.channel->topic.find("depth") != std::string::npos; };
     if (std::any_of(found.begin(), found.end(), is_called_depth)) {
       std::erase_if(found, [&](const Topic& t) { return !is_called_depth(t); });

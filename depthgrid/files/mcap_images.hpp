@@ -55,6 +55,7 @@ class McapImages {
   };
 
   [[nodiscard]] std::vector<Topic> find_topics(const McapChoice& choice);
+  [[nodiscard]] std::vector<Topic> depth_topics();
   [[nodiscard]] bool holds_depth(const McapChannel& channel);
   void check_depth(const McapChannel& channel);
   [[nodiscard]] std::string list_of_topics();

@@ -150,6 +150,8 @@ bool is_over(const monitor::CellAnswer& answer) {
          });
 }
 
+bool is_recording(const RunOptions& options) { return std::filesystem::path(options.cell).extension() == ".mcap"; }
+
 void told_damage(const std::string& file, const monitor::CellRecording& recording) {
   if (const std::string damage = recording.damage(); !damage.empty()) {
     warn(file + ": " + damage);
@@ -176,23 +178,8 @@ void ask_again(const std::string& file) {
   }
 }
 
-void run_cell(const RunOptions& options) {
-  if (options.seconds && !(*options.seconds > 0)) {
-    fail_usage("--seconds ", *options.seconds, ": must be above 0");
-  }
-  const bool is_recording = std::filesystem::path(options.cell).extension() == ".mcap";
-  if (options.again) {
-    if (!is_recording) {
-      fail_usage("--again asks the answers of a recording: depthgrid run FILE.mcap --again");
-    }
-    ask_again(options.cell);
-    return;
-  }
-  std::optional<monitor::CellRecording> recording;
-  if (is_recording) {
-    recording.emplace(options.cell);
-    told_damage(options.cell, *recording);
-  }
+/// Of the file, or of the recording, which then stands in place of cameras and joints.
+cell::Cell cell_of(const RunOptions& options, const std::optional<monitor::CellRecording>& recording) {
   cell::Cell cell = recording ? recording->played() : cell::load_cell(options.cell);
   if (!options.record.empty()) {
     if (!cell.outputs.record.empty()) {
@@ -200,17 +187,12 @@ void run_cell(const RunOptions& options) {
     }
     cell.outputs.record = options.record;
   }
-  // Of a recording the calibration and margins are those that it ran with.
-  const cell::CellSetup setup = cell::setup(recording ? recording->cell() : cell);
-  if (recording) {
-    warn(options.cell + ": is played; of the cell's outputs none but the terminal");
-  } else {
-    for (const std::string& line : cell::implausible(cell, setup)) {
-      warn(line);
-    }
-  }
-  const auto ros2 = monitor::ros2_node(cell);
-  monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup, ros2));
+  return cell;
+}
+
+/// What each is called.
+std::vector<std::string> add_outputs(const cell::Cell& cell, const cell::CellSetup& setup,
+                                     const std::shared_ptr<dds::Node>& ros2, monitor::Monitor& monitor) {
   std::vector<std::string> outputs;
   if (cell.outputs.udp) {
     monitor.add(monitor::udp_output(*cell.outputs.udp));
@@ -227,6 +209,28 @@ void run_cell(const RunOptions& options) {
   if (!cell.outputs.record.empty()) {
     monitor.record(monitor::recorder(cell, setup, monitor.names()));
   }
+  return outputs;
+}
+
+void run_cell(const RunOptions& options) {
+  std::optional<monitor::CellRecording> recording;
+  if (is_recording(options)) {
+    recording.emplace(options.cell);
+    told_damage(options.cell, *recording);
+  }
+  const cell::Cell cell = cell_of(options, recording);
+  // Of a recording the calibration and margins are those that it ran with.
+  const cell::CellSetup setup = cell::setup(recording ? recording->cell() : cell);
+  if (recording) {
+    warn(options.cell + ": is played; of the cell's outputs none but the terminal");
+  } else {
+    for (const std::string& line : cell::implausible(cell, setup)) {
+      warn(line);
+    }
+  }
+  const auto ros2 = monitor::ros2_node(cell);
+  monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup, ros2));
+  const std::vector<std::string> outputs = add_outputs(cell, setup, ros2, monitor);
   Records records(cell, setup, monitor);
   Teller teller(cell.outputs.terminal, monitor.names());
   ask_before_the_end();
@@ -261,6 +265,19 @@ void run_cell(const RunOptions& options) {
   }
 }
 
+void run(const RunOptions& options) {
+  if (options.seconds && !(*options.seconds > 0)) {
+    fail_usage("--seconds ", *options.seconds, ": must be above 0");
+  }
+  if (!options.again) {
+    run_cell(options);
+  } else if (is_recording(options)) {
+    ask_again(options.cell);
+  } else {
+    fail_usage("--again asks the answers of a recording: depthgrid run FILE.mcap --again");
+  }
+}
+
 }  // namespace
 
 void add_run_command(CLI::App& app) {
@@ -280,7 +297,7 @@ void add_run_command(CLI::App& app) {
       "from what\n"
       "is not known free, whatever fails meanwhile; then it says why. Ctrl-C ends it with a summary. docs/run.md says "
       "more.");
-  command.callback([options] { run_cell(*options); });
+  command.callback([options] { run(*options); });
 }
 
 }  // namespace depthgrid::program
