@@ -258,7 +258,7 @@ bool DepthStream::take(double longest_s) {
 }
 
 void DepthStream::copy(const Frame& frame) {
-  const auto row_bytes = static_cast<std::size_t>(2 * mode_.width);
+  const std::size_t row_bytes = 2 * static_cast<std::size_t>(mode_.width);
   if (frame.width != mode_.width || frame.height != mode_.height || frame.is_cropped != 0 ||
       frame.mode.format != mode_.format || frame.data == nullptr || frame.stride < static_cast<int>(row_bytes) ||
       frame.size < frame.stride * (frame.height - 1) + static_cast<int>(row_bytes)) {

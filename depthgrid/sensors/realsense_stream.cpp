@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 namespace depthgrid::sensors::rs2 {
@@ -124,7 +125,11 @@ Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& requ
   name_ = device_info(kName);
   serial_ = device_info(kSerialNumber);
   if (is_recording_) {
-    library_->call(f().playback_set_real_time, static_cast<const Device*>(device_.get()), 0);
+    // Not in real time: the reader waits for who takes the images. Version 2.13 means it the other way round, and
+    // without waiting it loses the last ones.
+    constexpr int kFirstThatMeansIt = 21400;
+    const bool is_reversed = library_->call(f().get_api_version) < kFirstThatMeansIt;
+    library_->call(f().playback_set_real_time, static_cast<const Device*>(device_.get()), is_reversed ? 1 : 0);
   } else {
     library_->call(f().set_devices_changed_callback, static_cast<const Context*>(context_.get()),
                    &Watch::on_devices_changed, watch_.begin(*this));
@@ -149,6 +154,22 @@ Stream::~Stream() {
       ignored = nullptr;
     }
   };
+  if (is_started_ && is_recording_) {
+    // At the end of a file the library's reader stops the sensor itself; version 2.13 locks itself up when both do. So
+    // a short file plays to its end, and a longer one is stopped in its middle.
+    constexpr auto kLook = std::chrono::milliseconds(5);
+    constexpr auto kCalm = std::chrono::milliseconds(50);
+    const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    const auto has_stopped = [&] {
+      const int status = f().playback_get_current_status(device_.get(), &ignored);
+      forget();
+      return status == kStopped;
+    };
+    while (is_started_ && std::chrono::steady_clock::now() < latest) {
+      is_started_ = !has_stopped();
+      std::this_thread::sleep_for(is_started_ ? kLook : kCalm);
+    }
+  }
   if (is_started_) {
     f().stop(sensor_.get(), &ignored);
     forget();

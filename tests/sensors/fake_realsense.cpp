@@ -285,7 +285,11 @@ void rs2_delete_sensor_list(void* list) {
 }
 void rs2_delete_sensor(void* sensor) {
   count(&FakeCounts::sensors, -1);
-  delete static_cast<FakeSensor*>(sensor);
+  auto* const self = static_cast<FakeSensor*>(sensor);
+  if (self->thread.joinable()) {  // a recording that ended by itself
+    self->thread.join();
+  }
+  delete self;
 }
 int rs2_is_sensor_extendable_to(const void* sensor, int extension, void**) {
   return extension == 7 && static_cast<const FakeSensor*>(sensor)->options[0] == 1 ? 1 : 0;
