@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "depthgrid/core/error.hpp"
 #include "depthgrid/core/sensor_models.hpp"
 #include "depthgrid/files/rig_file.hpp"
 #include "parts.hpp"
@@ -26,7 +27,8 @@ RigCamera make_camera(const std::string& id, int width_px, int height_px, double
                       double cy_px, nb::handle T_world_camera, const std::optional<std::string>& sensor,
                       double metres_per_unit, std::optional<double> near_m, std::optional<double> far_m,
                       std::optional<double> translation_m, std::optional<double> rotation_rad,
-                      std::optional<double> half_exposure_s, std::optional<double> smallest_obstacle_m) {
+                      std::optional<double> half_exposure_s, std::optional<double> time_uncertainty_s,
+                      std::optional<double> smallest_obstacle_m) {
   RigCamera camera;
   camera.id = id;
   camera.intrinsics = from_opencv(width_px, height_px, fx_px, fy_px, cx_px, cy_px);
@@ -37,8 +39,9 @@ RigCamera make_camera(const std::string& id, int width_px, int height_px, double
     camera.sensor = std::string(model.name);
     camera.rule = model.rule;
     camera.margins = sensor_margins(model, camera.intrinsics, metres_per_unit);
-  } else if (translation_m || rotation_rad || half_exposure_s || smallest_obstacle_m) {
-    camera.margins.emplace();
+  } else if (translation_m || rotation_rad || half_exposure_s || time_uncertainty_s || smallest_obstacle_m) {
+    fail("camera '", id,
+         "': errors are stated but no sensor, whose own are missing then; sensor='ideal' says that it has none");
   }
   camera.rule.near_m = near_m.value_or(camera.rule.near_m);
   camera.rule.far_m = far_m.value_or(camera.rule.far_m);
@@ -46,6 +49,7 @@ RigCamera make_camera(const std::string& id, int width_px, int height_px, double
     camera.margins->translation_m = translation_m.value_or(camera.margins->translation_m);
     camera.margins->rotation_rad = rotation_rad.value_or(camera.margins->rotation_rad);
     camera.margins->half_exposure_s = half_exposure_s.value_or(camera.margins->half_exposure_s);
+    camera.margins->time_uncertainty_s = time_uncertainty_s.value_or(camera.margins->time_uncertainty_s);
     camera.margins->smallest_obstacle_m = smallest_obstacle_m.value_or(camera.margins->smallest_obstacle_m);
   }
   validate(Rig{.name = "rig", .cameras = {camera}, .T_floor_world = std::nullopt});
@@ -68,20 +72,22 @@ void add_rig(nb::module_& module) {
              double cx_px, double cy_px, nb::object T_world_camera, const std::optional<std::string>& sensor,
              double metres_per_unit, std::optional<double> near_m, std::optional<double> far_m,
              std::optional<double> translation_m, std::optional<double> rotation_rad,
-             std::optional<double> half_exposure_s, std::optional<double> smallest_obstacle_m) {
+             std::optional<double> half_exposure_s, std::optional<double> time_uncertainty_s,
+             std::optional<double> smallest_obstacle_m) {
             new (self) RigCamera(make_camera(id, width_px, height_px, fx_px, fy_px, cx_px, cy_px, T_world_camera,
                                              sensor, metres_per_unit, near_m, far_m, translation_m, rotation_rad,
-                                             half_exposure_s, smallest_obstacle_m));
+                                             half_exposure_s, time_uncertainty_s, smallest_obstacle_m));
           },
           "id"_a, nb::kw_only(), "width_px"_a, "height_px"_a, "fx_px"_a, "fy_px"_a, "cx_px"_a, "cy_px"_a,
           "T_world_camera"_a, "sensor"_a = nb::none(), "metres_per_unit"_a = 0.001, "near_m"_a = nb::none(),
           "far_m"_a = nb::none(), "translation_m"_a = nb::none(), "rotation_rad"_a = nb::none(),
-          "half_exposure_s"_a = nb::none(), "smallest_obstacle_m"_a = nb::none(),
+          "half_exposure_s"_a = nb::none(), "time_uncertainty_s"_a = nb::none(), "smallest_obstacle_m"_a = nb::none(),
           "Intrinsics as OpenCV and ROS state them (pixel 0's centre is 0), of images without distortion.\n\n"
           "T_world_camera: 4 x 4, metres; x right, y down, z forward.\n"
           "sensor: a model of sensor_models(), which says how far readings may err and the range; None: nothing is "
           "said.\n"
-          "translation_m, rotation_rad: errors of the pose; half_exposure_s: half the time of an exposure.\n"
+          "translation_m, rotation_rad: errors of the pose; half_exposure_s: half the time of an exposure; "
+          "time_uncertainty_s: of its time stamps.\n"
           "smallest_obstacle_m: no obstacle is smaller; 0 says nothing. Has to be said here or to the evaluator.\n"
           "Raises Error with the value, the rule and a hint.")
       .def_ro("id", &RigCamera::id)

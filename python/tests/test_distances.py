@@ -141,6 +141,18 @@ def test_later_answers_are_shorter():
     assert len(too_late.reasons) == 1
 
 
+def test_errors_that_are_stated_make_answers_shorter():
+    def ask(**words):
+        cell = evaluator([camera(**words)])
+        cell.update("front", wall(), time_s=1.0)
+        return cell.distances([[0, 0, 1.8]]).distance_m[0]
+
+    assert ask(translation_m=0.03) == pytest.approx(ask() - 0.03, abs=TIGHT_M)
+    assert ask(rotation_rad=0.01) == pytest.approx(ask() - 0.01 * WALL_M, abs=TIGHT_M)
+    assert ask(half_exposure_s=0.01) == pytest.approx(ask() - 0.01 * 2.0, abs=TIGHT_M)
+    assert ask(time_uncertainty_s=0.01) == pytest.approx(ask() - 0.01 * 2.0, abs=TIGHT_M)
+
+
 def test_what_is_declared_is_checked():
     with pytest.raises(dg.Error, match="unobserved"):
         evaluator(unobserved="free")
@@ -154,6 +166,9 @@ def test_what_is_declared_is_checked():
         evaluator([camera(), camera()])
     with pytest.raises(dg.Error, match="margins"):
         evaluator([camera(sensor=None)])
+    for word in ("translation_m", "rotation_rad", "half_exposure_s", "time_uncertainty_s", "smallest_obstacle_m"):
+        with pytest.raises(dg.Error, match="ideal"):
+            camera(sensor=None, **{word: 0.01})
     with pytest.raises(dg.Error, match="no_such"):
         dg.Rig.load(pathlib.Path("no_such.json"))
     assert issubclass(dg.Error, ValueError)
