@@ -7,16 +7,15 @@
 namespace depthgrid::sensors {
 
 double lag_or_refuse(const ArrivalTimes& times, std::string_view stamps) {
-  if (times.lag_s) {
-    return *times.lag_s;
-  }
-  if (times.time_uncertainty_s < kLongestArrival_s) {
+  constexpr double kRounding_s = 1e-9;  // of the sum of two decimal numbers
+  const double lag_s = times.lag_s.value_or(0);
+  if (!(lag_s + times.time_uncertainty_s >= kLongestArrival_s - kRounding_s)) {
     fail(stamps, ", up to ", kLongestArrival_s,
-         " s after the exposure, so they look newer than they are: arrival_lag_s: what you have measured, or margins: "
-         "{time_uncertainty_s: ",
-         kLongestArrival_s, "}; the cell says ", times.time_uncertainty_s);
+         " s after the exposure, so they look newer than they are: arrival_lag_s, the most that an image needs until "
+         "it is stamped, and margins: {time_uncertainty_s} must be ",
+         kLongestArrival_s, " together; the cell says ", lag_s, " and ", times.time_uncertainty_s);
   }
-  return 0;
+  return lag_s;
 }
 
 double DeviceClock::clock_s(double device_s, double arrival_s) noexcept {

@@ -13,12 +13,13 @@ inline constexpr double kLongestArrival_s = 0.1;
 
 /// What is declared of cameras that do not say when they exposed.
 struct ArrivalTimes {
-  std::optional<double> lag_s{};  ///< from the middle of the exposure to the arrival, at least; it is taken off
+  std::optional<double> lag_s{};  ///< from the middle of the exposure to the arrival, at most; it is taken off
   double time_uncertainty_s = 0;  ///< by how much a stamp may be wrong: the camera's margin
 };
 
-/// What is taken off a time of arrival: the lag that is declared, or nothing where the uncertainty covers the longest
-/// one. Throws Error otherwise: the image would look newer than it is. `stamps`: "stamps images when they arrive".
+/// What is taken off a time of arrival: the lag that is declared. Throws Error unless it and the uncertainty cover the
+/// longest one together: an image whose lag was longer would look newer than it is. `stamps`: "stamps images when they
+/// arrive".
 [[nodiscard]] double lag_or_refuse(const ArrivalTimes& times, std::string_view stamps);
 
 /// A device's clock beside ours. No image comes before it was exposed, so the least difference between arrival and

@@ -369,7 +369,10 @@ void rs2_start(const void* sensor, void (*on_frame)(void*, void*), void* user, v
         const FakeRealSense as = now();
         std::this_thread::sleep_for(std::chrono::duration<double>(kPeriod_s));
         if (!silent_now) {
-          on_frame(frame_of(number, system_now_s() - as.arrival_late_s), user);
+          FakeFrame* const frame = frame_of(number, system_now_s() - as.arrival_late_s);
+          std::this_thread::sleep_for(std::chrono::duration<double>(as.stall_s));
+          on_frame(frame, user);
+          count(&FakeCounts::sent, 1);
         }
       }
       *self->device.status = 3;

@@ -15,6 +15,7 @@ struct FakeRealSense {
   long exposure_us = 8000;       // NOLINT(*runtime-int): as of 64 bits
   double stamp_late_s = 0.012;   ///< the frame's stamp after the middle of the exposure
   double arrival_late_s = 0.03;  ///< the frame's arrival after the middle of the exposure
+  double stall_s = 0;            ///< more that it is late, beyond the lag of the frames before; also while it runs
   int frame_width = 640;         ///< of the frames that come; also while it runs
   bool distorts = false;
   bool refuses_preset = false;
@@ -33,6 +34,7 @@ struct FakeCounts {
   int frames = 0;
   int errors = 0;
   int log_severity = -1;
+  int sent = 0;  ///< frames of devices that were handed over
 
   [[nodiscard]] int objects() const { return contexts + lists + devices + sensors + frames + errors; }
 };

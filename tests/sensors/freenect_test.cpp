@@ -103,7 +103,7 @@ class Freenect : public testing::Test {
 
 TEST_F(Freenect, EveryImageIsConvertedToTheBitWithTheDevicesTimes) {
   FreenectSettings settings;
-  settings.arrival.lag_s = 0.03;
+  settings.arrival = {.lag_s = 0.03, .time_uncertainty_s = 0.07};
   FreenectCamera camera(settings, library_);
   DepthReading reading;
   EXPECT_EQ(camera.next(reading, 0), Reading::failed) << "not open";

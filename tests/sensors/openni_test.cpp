@@ -128,7 +128,7 @@ class Openni : public testing::Test {
   [[nodiscard]] std::unique_ptr<OpenniCamera> camera(const std::string& device = "") const {
     OpenniSettings settings;
     settings.device = device;
-    settings.arrival.lag_s = 0.03;
+    settings.arrival = {.lag_s = 0.03, .time_uncertainty_s = 0.07};
     return std::make_unique<OpenniCamera>(settings, library_);
   }
   /// Images of the driver in a file, by OpenNI2's own recorder.

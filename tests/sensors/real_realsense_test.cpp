@@ -161,7 +161,7 @@ TEST(RealRealSense, WithoutADeviceItSaysSo) {
 
 TEST(RealRealSense, ImagesOfASoftwareDeviceComeToTheBit) {
   RealSenseSettings settings;
-  settings.arrival.lag_s = 0.03;
+  settings.arrival = {.lag_s = 0.03, .time_uncertainty_s = 0.07};
   RealSenseCamera camera(settings, with_software_device());
   camera.open();
   ASSERT_TRUE(camera.info().intrinsics);

@@ -153,9 +153,12 @@ TEST_F(RealSense, ASlowReaderGetsTheNewestImageAndWhatItMissedIsCounted) {
   DepthReading reading;
   ASSERT_EQ(next(*source, reading), Reading::got);
   const long first = number_of(reading.depth);  // NOLINT(*runtime-int)
-  (void)wait_until(clock_now_s() + 0.2, 1);
+  const int sent = counts().sent;
+  while (counts().sent < sent + 5) {
+    (void)wait_until(clock_now_s() + 0.01, 1);
+  }
   ASSERT_EQ(next(*source, reading), Reading::got);
-  EXPECT_GE(reading.skipped, 5);
+  EXPECT_GE(reading.skipped, 3) << "but for one that was being handed over";
   EXPECT_EQ(number_of(reading.depth), first + 1 + reading.skipped);
 }
 
@@ -310,11 +313,18 @@ TEST_F(RealSense, StampsOfTheArrivalAreRefusedUnlessTheirLagIsDeclared) {
     ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
     EXPECT_EQ(source->info().clock, "this computer, when images arrive");
   }
-  settings.arrival = {.lag_s = 0.03, .time_uncertainty_s = 0};
+  for (const double lag_s : {0.0, 0.03, 0.09}) {
+    settings.arrival = {.lag_s = lag_s, .time_uncertainty_s = 0.009};
+    const auto source = camera(settings);
+    source->open();
+    ASSERT_EQ(next(*source, reading), Reading::failed) << "an image may have been under way for longer";
+    EXPECT_THAT(std::string(source->reason()), HasSubstr("must be 0.1 together; the cell says "));
+  }
+  settings.arrival = {.lag_s = 0.09, .time_uncertainty_s = 0.01};
   const auto source = camera(settings);
   source->open();
   ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
-  EXPECT_LT(reading.time_s, clock_now_s() - 0.029) << "the lag is taken off";
+  EXPECT_LT(reading.time_s, clock_now_s() - 0.089) << "the lag is taken off";
 }
 
 TEST_F(RealSense, TheDevicesOwnClockIsFollowedByTheArrivals) {
@@ -328,17 +338,17 @@ TEST_F(RealSense, TheDevicesOwnClockIsFollowedByTheArrivals) {
                 HasSubstr("the device's clock is known here by the images' arrival alone"));
   }
   RealSenseSettings settings;
-  settings.arrival.lag_s = 0.03;
+  settings.arrival = {.lag_s = 0.03, .time_uncertainty_s = 0.07};
   const auto source = camera(settings);
   source->open();
   ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
   EXPECT_GE(reading.skipped, DeviceClock::kImages - 1) << "the first ones only say how the clocks stand";
   EXPECT_EQ(source->info().clock, "the device, by the images' arrival");
-  for (int n = 0; n < 5; ++n) {
-    ASSERT_EQ(next(*source, reading), Reading::got);
-    EXPECT_LT(reading.time_s, clock_now_s() - 0.029);
-    EXPECT_GT(reading.time_s, clock_now_s() - 2);
+  is([](FakeRealSense& fake) { fake.stall_s = 0.3; });
+  for (int n = 0; n < 3; ++n) {  // the first of them may have been under way before
+    ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
   }
+  EXPECT_LT(reading.time_s, clock_now_s() - 0.3) << "an image that is late does not look newer";
 }
 
 TEST_F(RealSense, AClockThatChangesInMidRunIsAFailure) {
