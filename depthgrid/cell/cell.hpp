@@ -57,6 +57,7 @@ struct CameraEntry {
   std::optional<Pose> T_world_camera{};       ///< none: from the rig file, or of `frame`
   std::string frame{};                        ///< of /tf and /tf_static: where a topic's images are taken
   double frame_age_s = 0.1;                   ///< how old a transform of it may be
+  std::string image_frame{};                  ///< what the images call it; empty: `frame`
   std::string sensor{};                       ///< a sensor model; empty: the rig file's, or none
   MarginEntry margins{};                      ///< in place of the model's
   double smallest_obstacle_m = 0;             ///< declared

@@ -39,9 +39,9 @@ constexpr std::array<std::string_view, 18> kCameraKeys{"camera_info",
                                                        "smallest_obstacle_m",
                                                        "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
-constexpr std::array<std::string_view, 7> kPoseKeys{"position_m",      "look_at_m", "up",       "rpy_deg",
-                                                    "quaternion_xyzw", "frame",     "max_age_s"};
-constexpr std::array<std::string_view, 2> kFrameKeys{"frame", "max_age_s"};
+constexpr std::array<std::string_view, 8> kPoseKeys{"position_m",      "look_at_m", "up",        "rpy_deg",
+                                                    "quaternion_xyzw", "frame",     "max_age_s", "image_frame"};
+constexpr std::array<std::string_view, 3> kFrameKeys{"frame", "max_age_s", "image_frame"};
 constexpr std::array<std::string_view, 9> kMarginKeys{
     "constant_m",   "linear",          "quadratic_per_m",    "lateral_px",     "translation_m",
     "rotation_deg", "half_exposure_s", "time_uncertainty_s", "second_view_x_m"};
@@ -229,8 +229,10 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
 
 void read_pose(const Section& pose, CameraEntry& camera) {
   if (!pose.has("frame")) {
-    if (pose.has("max_age_s")) {
-      pose.refuse("max_age_s", "belongs to frame, remove it");
+    for (const std::string_view key : {"max_age_s", "image_frame"}) {
+      if (pose.has(key)) {
+        pose.refuse(key, "belongs to frame, remove it");
+      }
     }
     camera.T_world_camera = pose_of(pose, true);
     return;
@@ -245,6 +247,7 @@ void read_pose(const Section& pose, CameraEntry& camera) {
   }
   camera.frame = pose.text("frame", "the depth imager's optical frame");
   camera.frame_age_s = pose.number("max_age_s", {0, 10, true}, "s", "how old a transform of /tf may be", 0.1);
+  camera.image_frame = pose.text("image_frame", "what the images say they are taken in, where it is another name", "");
 }
 
 void read_calibration(const Section& section, const std::filesystem::path& folder, CameraEntry& camera) {

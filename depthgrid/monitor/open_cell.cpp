@@ -122,9 +122,12 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const
             std::make_unique<sensors::RecordedCamera>(camera.recording, cell::recording_options(camera), playback));
         break;
       case SourceKind::ros2:
-        sources.cameras.push_back(std::make_unique<sensors::Ros2Camera>(
-            ros2, camera.device,
-            sensors::Ros2Place{.world = cell.ros2.frame, .frame = camera.frame, .max_age_s = camera.frame_age_s}));
+        sources.cameras.push_back(
+            std::make_unique<sensors::Ros2Camera>(ros2, camera.device,
+                                                  sensors::Ros2Place{.world = cell.ros2.frame,
+                                                                     .frame = camera.frame,
+                                                                     .max_age_s = camera.frame_age_s,
+                                                                     .image_frame = camera.image_frame}));
         break;
       default:
         sources.cameras.push_back(device_camera(camera, setup.rig.cameras[k], playback));

@@ -1,6 +1,7 @@
 #include "depthgrid/sensors/ros2_camera.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <span>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "depthgrid/messages/serialization.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
+#include "depthgrid/sensors/system_clock.hpp"
 
 namespace depthgrid::sensors {
 namespace {
@@ -24,8 +26,12 @@ bool same(const std::optional<PinholeCamera>& a, const std::optional<PinholeCame
 
 constexpr std::string_view kCompressedDepth = "/compressedDepth";
 constexpr double kLookAgain_s = 0.002;
+/// The system's clock was set: more than the two clocks drift apart between two looks.
+constexpr double kClockStep_s = 0.002;
 /// As many as come within a tenth of a second at 1 kHz.
 constexpr dds::Qos kTransforms{dds::Reliability::best_effort, dds::Durability::volatile_, 100};
+
+std::string_view without_slash(std::string_view frame) { return frame.substr(frame.starts_with('/') ? 1 : 0); }
 
 /// Of image_transport's topic that of the images themselves counts.
 std::string beside(const std::string& topic, const std::string& name) {
@@ -112,12 +118,20 @@ void Ros2Camera::find_frame() {
   }
 }
 
+// Transforms are kept by the system's clock, as they and the images are stamped. Where that is set, those before say
+// nothing of the times after.
 void Ros2Camera::listen_to_frames() {
+  const double ahead_s = system_ahead_s();
+  if (system_ahead_s_ && std::abs(ahead_s - *system_ahead_s_) > kClockStep_s) {
+    frames_.forget_moving();
+  }
+  system_ahead_s_ = ahead_s;
+  const std::int64_t now_ns = messages::nanoseconds(stamp_of(clock_now_s()));
   while (standing_->take(frames_message_).message) {
-    frames_.add(messages::from_bytes<messages::Transforms>(frames_message_), true);
+    frames_.add(messages::from_bytes<messages::Transforms>(frames_message_), true, now_ns);
   }
   while (moving_->take(frames_message_).message) {
-    frames_.add(messages::from_bytes<messages::Transforms>(frames_message_), false);
+    frames_.add(messages::from_bytes<messages::Transforms>(frames_message_), false, now_ns);
   }
 }
 
@@ -174,6 +188,20 @@ bool Ros2Camera::has_other_calibration() {
   return !refused_.empty() || !same(before, intrinsics_);
 }
 
+void Ros2Camera::check_frame(const std::string& frame) {
+  const std::string& wanted = place_.image_frame.empty() ? place_.frame : place_.image_frame;
+  if (!place_.frame.empty() && without_slash(frame) != without_slash(wanted)) {
+    fail("its images are taken in frame '", printable_excerpt(frame), "', and the cell looks for '",
+         printable_excerpt(wanted), "' on /tf: name theirs, or say pose: {frame: ..., image_frame: ...}");
+  }
+  if (frame_.empty()) {
+    frame_ = frame;
+  } else if (frame != frame_) {
+    fail("images of two frames come on one topic, '", printable_excerpt(frame_), "' and '", printable_excerpt(frame),
+         "': does a second driver publish there?");
+  }
+}
+
 Reading Ros2Camera::newest(DepthReading& reading) {
   if (has_other_calibration()) {  // whoever opened it has to see that
     reason_ = topic_ + ": " +
@@ -188,12 +216,7 @@ Reading Ros2Camera::newest(DepthReading& reading) {
     return Reading::nothing;
   }
   const messages::Header header = read_image(reading);
-  if (frame_.empty()) {
-    frame_ = header.frame_id;
-  } else if (header.frame_id != frame_) {
-    fail("images of two frames come on one topic, '", printable_excerpt(frame_), "' and '",
-         printable_excerpt(header.frame_id), "': does a second driver publish there?");
-  }
+  check_frame(header.frame_id);
   // The same stamp is the same time: read twice, the two clocks differ by microseconds, and an image that came twice
   // would be a new one with the pixels of the one before.
   const std::int64_t stamp_ns = messages::nanoseconds(header.stamp);

@@ -22,6 +22,7 @@ struct Ros2Place {
   std::string frame;  ///< the depth imager's optical frame; empty: the place is stated elsewhere
   /// Between two transforms of a moving frame, and for how long after an image the later one may come.
   double max_age_s = 0.1;
+  std::string image_frame{};  ///< what the images say they are taken in; empty: `frame`
 };
 
 /// Images of sensor_msgs/Image: 16UC1 in millimetres, 32FC1 in metres; of a topic that ends with /compressedDepth those
@@ -31,7 +32,7 @@ struct Ros2Place {
 /// exposure, by this computer's clock. Intrinsics are those of the topic camera_info beside it, where one comes within
 /// two seconds of the first open(); another one that comes later ends next() as failed, and the next open() knows it. A
 /// topic with "rect" in its name has those of rectified images. Images of a lens that distorts are refused: they have
-/// to be rectified. So are images of two frames on one topic.
+/// to be rectified. So are images of two frames on one topic, and with a place those of another frame than that.
 class Ros2Camera final : public DepthSource {
  public:
   /// `topic`: "/camera/depth/image_raw".
@@ -47,6 +48,8 @@ class Ros2Camera final : public DepthSource {
   [[nodiscard]] Reading newest(DepthReading& reading);
   /// Of the message into the reading, time and pose left out.
   messages::Header read_image(DepthReading& reading);
+  /// Throws Error where an image of this frame is none of the camera's.
+  void check_frame(const std::string& frame);
   /// Waits for the pose of the image at hand, at most so long.
   [[nodiscard]] Reading place_image(DepthReading& reading, double longest_s);
   void listen_to_frames();
@@ -67,6 +70,7 @@ class Ros2Camera final : public DepthSource {
   std::optional<dds::Subscription> standing_;
   std::vector<std::byte> frames_message_;
   TransformHistory frames_;
+  std::optional<double> system_ahead_s_;     ///< at the last look
   std::optional<DepthReading> waiting_;      ///< for its pose; its pixels are in message_, pixels_ or png_
   std::int64_t waiting_ns_ = 0;              ///< its stamp
   std::optional<PinholeCamera> intrinsics_;  ///< as they were told last

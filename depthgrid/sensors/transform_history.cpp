@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t kMostSamples = 4000;
 constexpr std::size_t kMostFrames = 10000;
 constexpr std::size_t kDeepest = 100;
+/// In the future, on clocks that agree not quite. As images may be.
+constexpr std::int64_t kFuture_ns = 5'000'000;
 
 std::string frame_name(const std::string& name) { return name.starts_with('/') ? name.substr(1) : name; }
 
@@ -21,7 +23,7 @@ std::string quoted(const std::string& name) { return "'" + printable_excerpt(nam
 
 }  // namespace
 
-void TransformHistory::add(const messages::Transforms& message, bool stands) {
+void TransformHistory::add(const messages::Transforms& message, bool stands, std::int64_t now_ns) {
   constexpr double kUnit = 1e-3;
   for (const messages::TransformStamped& stamped : message.transforms) {
     const messages::Vector3& t = stamped.transform.translation;
@@ -35,20 +37,39 @@ void TransformHistory::add(const messages::Transforms& message, bool stands) {
       continue;
     }
     sample.turn.normalize();
-    Frame& frame = frames_[frame_name(stamped.child_frame_id)];
+    const std::string name = frame_name(stamped.child_frame_id);
+    if (!stands && sample.stamp_ns - now_ns > kFuture_ns) {
+      refused_frame_ = name;
+      refused_s_ = static_cast<double>(sample.stamp_ns - now_ns) * 1e-9;
+      continue;
+    }
+    if (refused_frame_ == name) {
+      refused_frame_.clear();
+    }
+    Frame& frame = frames_[name];
     const std::string parent = frame_name(stamped.header.frame_id);
     if (frame.parent != parent || frame.stands != stands) {  // it was taken from one and put into another
       frame = {.parent = parent, .stands = stands, .samples = {}};
     }
     if (stands) {
       frame.samples.assign(1, sample);
-    } else if (frame.samples.empty() || sample.stamp_ns > frame.samples.back().stamp_ns) {
+      continue;
+    }
+    // By the clock that is set back, images would be found where the frame was at these times before.
+    if (!frame.samples.empty() && sample.stamp_ns < frame.samples.back().stamp_ns) {
+      frame.samples.clear();
+    }
+    if (frame.samples.empty() || sample.stamp_ns > frame.samples.back().stamp_ns) {
       frame.samples.push_back(sample);
       if (frame.samples.size() > kMostSamples) {
         frame.samples.pop_front();
       }
     }
   }
+}
+
+void TransformHistory::forget_moving() {
+  std::erase_if(frames_, [](const auto& named) { return !named.second.stands; });
 }
 
 PlaceAtTime TransformHistory::place(const std::string& name, const Frame& frame, std::int64_t stamp_ns) const {
@@ -123,8 +144,15 @@ PlaceAtTime TransformHistory::find(const std::string& world, const std::string& 
     T_above_frame.emplace(at, T.matrix());
     return at == goal;
   });
+  const auto with_refused = [this](PlaceAtTime place) {
+    if (!place.T_world_frame && !refused_frame_.empty()) {
+      place.reason += "; a transform of frame " + quoted(refused_frame_) + " that lies " + std::to_string(refused_s_) +
+                      " s in the future was refused";
+    }
+    return place;
+  };
   if (!up.reason.empty()) {
-    return up;
+    return with_refused(up);
   }
   std::optional<Pose> T_world_frame;
   PlaceAtTime down = climb(world, [&](const std::string& at, const Pose& T_at_world) {
@@ -139,7 +167,7 @@ PlaceAtTime TransformHistory::find(const std::string& world, const std::string& 
     down.reason = "no transforms on /tf_static and /tf lead from frame " + quoted(frame) + " to " + quoted(world);
   }
   down.T_world_frame = T_world_frame;
-  return down;
+  return with_refused(down);
 }
 
 }  // namespace depthgrid::sensors

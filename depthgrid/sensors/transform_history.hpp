@@ -25,8 +25,12 @@ class TransformHistory {
   /// Over a gap between two transforms of a frame that is longer than this nothing is interpolated.
   explicit TransformHistory(double longest_gap_s) : longest_gap_s_(longest_gap_s) {}
 
-  /// Transforms that are no rigid ones, and those not newer than the last of their frame, are passed over.
-  void add(const messages::Transforms& message, bool stands);
+  /// Transforms that are no rigid ones, and a second one of the same time, are passed over. So are those of frames that
+  /// move which lie later than `now_ns` by more than clocks may differ: everything after them would look old. One that
+  /// is older than the last of its frame forgets that frame's others: whoever says it has set its clock back.
+  void add(const messages::Transforms& message, bool stands, std::int64_t now_ns);
+  /// Of frames that move; of those that stand nothing is of a time.
+  void forget_moving();
 
   /// p_world = T * p_frame at the stamp. Of frames that move it is interpolated between the transforms before and
   /// after; none is held: then `may_come`.
@@ -48,6 +52,8 @@ class TransformHistory {
 
   double longest_gap_s_;
   std::map<std::string, Frame> frames_;
+  std::string refused_frame_;  ///< whose newest transform lies in the future; empty: none
+  double refused_s_ = 0;       ///< how far
 };
 
 }  // namespace depthgrid::sensors

@@ -253,11 +253,12 @@ TEST(CellFile, ATopicsCameraMayStandWhereItsFrameIs) {
     text.replace(text.find(what), what.size(), by);
   };
   replace("    pose: {position_m: [2, 0, 1], look_at_m: [0, 0, 0.5]}\n",
-          "    pose: {frame: left_optical, max_age_s: 0.2}\n");
+          "    pose: {frame: left_optical, max_age_s: 0.2, image_frame: left}\n");
   replace("source: simulated\n    rate_hz: 10\n", "source: ros2\n    topic: /left/image_rect\n");
   const Cell cell = parse_cell(text, "a.yaml");
   EXPECT_EQ(cell.cameras[0].frame, "left_optical");
   EXPECT_EQ(cell.cameras[0].frame_age_s, 0.2);
+  EXPECT_EQ(cell.cameras[0].image_frame, "left");
   EXPECT_FALSE(cell.cameras[0].T_world_camera);
   EXPECT_TRUE(setup(cell).rig.cameras[0].T_world_camera.isApprox(Pose::Identity())) << "until its images come";
   EXPECT_THAT(test::thrown_message([&] {

@@ -286,6 +286,7 @@ TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
   dds::Publisher standing = driver_.publish("/tf_static", type_of<messages::Transforms>(), dds::kLatched);
   dds::Publisher moving = driver_.publish("/tf", type_of<messages::Transforms>(), dds::kReliable);
   Ros2Camera camera(node_, "/camera/image", {.world = "world", .frame = "camera_optical", .max_age_s = 2});
+  const std::vector<std::uint16_t> pixels(12, 1500);
   std::string why;
   try {
     camera.open();
@@ -295,14 +296,21 @@ TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
   EXPECT_NE(why.find("lead from frame 'camera_optical' to 'world'"), std::string::npos) << why;
   ASSERT_TRUE(standing.write(messages::to_bytes(frame_at("camera_optical", "flange", 0.25, 0))));
   const double begin_s = clock_now_s() - 0.2;  // far apart beside what the two clocks' readings differ by
+  const auto image_at = [&](double time_s, const char* frame) {
+    messages::Image image = image_of(pixels, 4, time_s);
+    image.header.frame_id = frame;
+    return image;
+  };
   send(moving, frame_at("flange", "world", 1, begin_s));
   camera.open();
   DepthReading reading;
-  const std::vector<std::uint16_t> pixels(12, 1500);
   const double exposed_s = clock_now_s();
-  send(images, image_of(pixels, 4, exposed_s));
+  send(images, image_at(exposed_s, "/camera_optical"));
   EXPECT_EQ(camera.next(reading, 0.05), Reading::nothing) << "where it is then is not known yet";
-  send(moving, frame_at("flange", "world", 2, exposed_s + (exposed_s - begin_s)));
+  const double later_s = exposed_s + (exposed_s - begin_s);
+  while (!wait_until(later_s, 1)) {  // what lies in the future is refused
+  }
+  send(moving, frame_at("flange", "world", 2, later_s));
   ASSERT_TRUE(becomes([&] {
     const Reading found = camera.next(reading, 0.05);
     EXPECT_NE(found, Reading::failed) << camera.reason();
@@ -312,11 +320,40 @@ TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
   EXPECT_NEAR(reading.T_world_camera->translation().x(), 1.75, 1e-3) << "halfway, and its place on the flange";
   EXPECT_EQ(static_cast<const std::uint16_t*>(reading.depth.data)[11], 1500);
   Reading found = Reading::nothing;
-  send(images, image_of(pixels, 4, clock_now_s() + 1));
+  send(images, image_at(clock_now_s() + 1, "/camera_optical"));
   ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.05)) != Reading::nothing; }));
   EXPECT_EQ(found, Reading::failed) << "/tf is silent";
   EXPECT_NE(camera.reason().find("the newest transform of frame 'flange' on /tf is"), std::string_view::npos)
       << camera.reason();
+}
+
+// A body's frame in place of the optical one turns everything by a quarter.
+TEST_F(Ros2Source, ImagesOfAnotherFrameThanThatOnTfAreRefused) {
+  dds::Publisher images = driver_.publish("/hand/image", type_of<messages::Image>(), dds::kReliable);
+  dds::Publisher standing = driver_.publish("/tf_static", type_of<messages::Transforms>(), dds::kLatched);
+  ASSERT_TRUE(standing.write(messages::to_bytes(frame_at("hand_link", "world", 3, 0))));
+  const std::vector<std::uint16_t> pixels(12, 1500);
+  const auto found_by = [&](Ros2Camera& camera, DepthReading& reading) {
+    camera.open();
+    Reading found = Reading::nothing;
+    EXPECT_TRUE(becomes([&] {
+      messages::Image image = image_of(pixels, 4, clock_now_s());
+      image.header.frame_id = "hand_optical";
+      send(images, image);
+      return (found = camera.next(reading, 0.05)) != Reading::nothing;
+    }));
+    return found;
+  };
+  DepthReading reading;
+  Ros2Camera turned(node_, "/hand/image", {.world = "world", .frame = "hand_link", .max_age_s = 0.1});
+  EXPECT_EQ(found_by(turned, reading), Reading::failed);
+  EXPECT_NE(turned.reason().find("taken in frame 'hand_optical', and the cell looks for 'hand_link'"),
+            std::string_view::npos)
+      << turned.reason();
+  Ros2Camera renamed(node_, "/hand/image",
+                     {.world = "world", .frame = "hand_link", .max_age_s = 0.1, .image_frame = "/hand_optical"});
+  EXPECT_EQ(found_by(renamed, reading), Reading::got) << renamed.reason();
+  EXPECT_NEAR(reading.T_world_camera->translation().x(), 3, 1e-9);
 }
 
 TEST_F(Ros2Source, JointsAreFoundByTheirNames) {
