@@ -58,6 +58,8 @@ struct CameraEntry {
   std::string frame{};                        ///< of /tf and /tf_static: where a topic's images are taken
   double frame_age_s = 0.1;                   ///< how old a transform of it may be
   std::string image_frame{};                  ///< what the images call it; empty: `frame`
+  std::optional<double> frame_speed_m_s{};    ///< the fastest that its origin moves
+  std::optional<double> frame_turn_rad_s{};   ///< the fastest that it turns
   std::string sensor{};                       ///< a sensor model; empty: the rig file's, or none
   MarginEntry margins{};                      ///< in place of the model's
   double smallest_obstacle_m = 0;             ///< declared

@@ -39,9 +39,12 @@ constexpr std::array<std::string_view, 18> kCameraKeys{"camera_info",
                                                        "smallest_obstacle_m",
                                                        "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
-constexpr std::array<std::string_view, 8> kPoseKeys{"position_m",      "look_at_m", "up",        "rpy_deg",
-                                                    "quaternion_xyzw", "frame",     "max_age_s", "image_frame"};
-constexpr std::array<std::string_view, 3> kFrameKeys{"frame", "max_age_s", "image_frame"};
+constexpr std::array<std::string_view, 10> kPoseKeys{"position_m",      "look_at_m",     "up",        "rpy_deg",
+                                                     "quaternion_xyzw", "frame",         "max_age_s", "image_frame",
+                                                     "max_speed_m_s",   "max_turn_deg_s"};
+/// Those that belong to the first.
+constexpr std::array<std::string_view, 5> kFrameKeys{"frame", "max_age_s", "image_frame", "max_speed_m_s",
+                                                     "max_turn_deg_s"};
 constexpr std::array<std::string_view, 9> kMarginKeys{
     "constant_m",   "linear",          "quadratic_per_m",    "lateral_px",     "translation_m",
     "rotation_deg", "half_exposure_s", "time_uncertainty_s", "second_view_x_m"};
@@ -229,7 +232,7 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
 
 void read_pose(const Section& pose, CameraEntry& camera) {
   if (!pose.has("frame")) {
-    for (const std::string_view key : {"max_age_s", "image_frame"}) {
+    for (const std::string_view key : kFrameKeys) {
       if (pose.has(key)) {
         pose.refuse(key, "belongs to frame, remove it");
       }
@@ -248,10 +251,20 @@ void read_pose(const Section& pose, CameraEntry& camera) {
   camera.frame = pose.text("frame", "the depth imager's optical frame");
   camera.frame_age_s = pose.number("max_age_s", {0, 10, true}, "s", "how old a transform of /tf may be", 0.1);
   camera.image_frame = pose.text("image_frame", "what the images say they are taken in, where it is another name", "");
+  camera.frame_speed_m_s = pose.number_if("max_speed_m_s", {0, 100}, "m/s");
+  camera.frame_turn_rad_s = pose.number_if("max_turn_deg_s", {0, 36000}, "deg/s");
+  if (camera.frame_turn_rad_s) {
+    camera.frame_turn_rad_s = *camera.frame_turn_rad_s * kDegree;
+  }
 }
 
 void read_calibration(const Section& section, const std::filesystem::path& folder, CameraEntry& camera) {
   if (section.has("rig")) {
+    if (camera.source == SourceKind::recording) {
+      section.refuse("rig",
+                     "says nothing with source: recording, which has a rig file or camera_info of its own: state "
+                     "intrinsics: and pose: here, or change the recording's rig.json");
+    }
     camera.rig_file = folder / section.text("rig", "");
   }
   if (section.has("intrinsics")) {

@@ -65,6 +65,25 @@ CameraMargins margins_of(const CameraEntry& entry, const RigCamera& camera) {
   return margins;
 }
 
+/// Of a camera that moves: where it may have been within the time that its images may be off by.
+void add_motion(const CameraEntry& entry, const std::string& key, CameraMargins& margins,
+                std::vector<ShownValue>& shown) {
+  const double time_s = margins.half_exposure_s + margins.time_uncertainty_s;
+  if (entry.frame.empty() || time_s == 0) {
+    return;
+  }
+  if (!entry.frame_speed_m_s || !entry.frame_turn_rad_s) {
+    fail(
+        entry.place, ": its images are sure to ", time_s, " s (margins: half_exposure_s, time_uncertainty_s), and ",
+        "nothing says how far the camera moves in that time: pose: {frame, max_speed_m_s, max_turn_deg_s}; 0 and 0 of ",
+        "one that stands");
+  }
+  margins.translation_m += *entry.frame_speed_m_s * time_s;
+  margins.rotation_rad += *entry.frame_turn_rad_s * time_s;
+  shown.push_back({key + ".margins.translation_m with its motion", words(margins.translation_m), "m", entry.frame});
+  shown.push_back({key + ".margins.rotation_rad with its motion", words(margins.rotation_rad), "rad", entry.frame});
+}
+
 void show_camera(const CameraEntry& entry, const RigCamera& camera, const std::string& key, const std::string& origin,
                  std::vector<ShownValue>& shown) {
   const PinholeCamera& image = camera.intrinsics;
@@ -115,7 +134,9 @@ RigCamera camera_of(const CameraEntry& entry, std::size_t index, std::vector<Sho
     camera.rule = sensor_model(entry.sensor).rule;
   }
   camera.margins = margins_of(entry, camera);
-  show_camera(entry, camera, "cameras[" + std::to_string(index) + "]", origin, shown);
+  const std::string key = "cameras[" + std::to_string(index) + "]";
+  show_camera(entry, camera, key, origin, shown);
+  add_motion(entry, key, *camera.margins, shown);
   return camera;
 }
 

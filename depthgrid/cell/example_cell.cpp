@@ -16,19 +16,22 @@ std::string entry_of(const ExampleCamera& camera) {
   if (camera.intrinsics) {
     const PinholeCamera& image = *camera.intrinsics;
     const Eigen::Vector2d centre = principal_point_opencv(image);
-    text << "    intrinsics: {width_px: " << image.width_px << ", height_px: " << image.height_px
-         << ", fx_px: " << image.fx_px << ", fy_px: " << image.fy_px << ", cx_px: " << centre.x()
-         << ", cy_px: " << centre.y() << "}"
-         << (camera.is_calibrated ? "   # the camera's own\n" : "   # usual ones of such a camera: calibrate yours\n");
+    text << (camera.is_calibrated ? "    intrinsics" : "    # intrinsics") << ": {width_px: " << image.width_px
+         << ", height_px: " << image.height_px << ", fx_px: " << image.fx_px << ", fy_px: " << image.fy_px
+         << ", cx_px: " << centre.x() << ", cy_px: " << centre.y() << "}"
+         << (camera.is_calibrated ? "   # the camera's own\n"
+                                  : "   # usual ones of such a camera, not yours: calibrate it\n");
   } else {
     text << "    # intrinsics: {width_px: 640, height_px: 480, fx_px: , fy_px: , cx_px: , cy_px: }   # it says none\n";
   }
-  text
-      << "    pose: {position_m: [1.8, 0, 1.4], look_at_m: [0, 0, 0.5]}   # yours: of the depth imager, in the world\n";
+  // Nobody knows where it stands. What looks like a pose would be answered with.
+  text << "    # measure where it stands: until numbers are here, check and run refuse this file\n"
+          "    pose: {position_m: [measure, measure, measure], look_at_m: [measure, measure, measure]}"
+          "   # of the depth imager, in the world\n";
   text << (camera.sensor.empty() ? "    # sensor: which of docs/sensor-models.md, or margins: {constant_m, ...}\n"
                                  : "    sensor: " + camera.sensor + "\n");
   // Both stamp images by a clock of their own (docs/cameras.md).
-  text << "    margins: {translation_m: 0.005, rotation_deg: 0.15"
+  text << "    margins: {translation_m: measure, rotation_deg: measure"
        << (camera.source == "realsense" ? "" : ", time_uncertainty_s: 0.1") << "}   # how well the pose is known\n";
   return text.str();
 }

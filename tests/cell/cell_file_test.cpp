@@ -162,6 +162,8 @@ constexpr Broken kBroken[] = {
     {"    pose: {position_m: [2, 0, 1], look_at_m: [0, 0, 0.5]}\n", "", "4:5", "'pose' is missing"},
     {"position_m: [2, 0, 1], look_at_m: [0, 0, 0.5]", "frame: camera", "8:12", "is looked up on /tf, which only"},
     {"position_m: [2, 0, 1],", "position_m: [2, 0, 1], max_age_s: 1,", "8:35", "belongs to frame, remove it"},
+    {"source: simulated\n    rate_hz: 10", "source: recording\n    recording: a\n    rig: rig.json", "7:5",
+     "rig: says nothing with source: recording, which has a rig file or camera_info of its own"},
     {"rotation_deg: 0.1", "rotation_rad: 0.1", "15:37", "unknown key 'rotation_rad' (did you mean 'rotation_deg'?)"},
     {"margins: {translation_m: 0.005, rotation_deg: 0.1}", "margins: 0.005", "15:5",
      "must be a map of keys and values"},
@@ -265,6 +267,38 @@ TEST(CellFile, ATopicsCameraMayStandWhereItsFrameIs) {
                 (void)parse_cell(with(text, "frame: left_optical,", "frame: a, position_m: [0, 0, 1],"), "a.yaml");
               }),
               HasSubstr("says nothing beside frame"));
+}
+
+TEST(CellFile, ACameraThatMovesIsUncertainByItsMotionWithinTheExposure) {
+  const std::string text =
+      with(with(with(whole_cell(), "source: simulated\n    intrinsics", "source: ros2\n    topic: /a\n    intrinsics"),
+                "pose: {position_m: [-2, 0, 1], rpy_deg: [-90, 0, -90]}", "pose: {frame: hand}"),
+           "rotation_deg: 0.1}", "rotation_deg: 0.1, half_exposure_s: 0.01, time_uncertainty_s: 0.02}");
+  EXPECT_THAT(
+      test::thrown_message([&] { (void)setup(parse_cell(text, "a.yaml")); }),
+      HasSubstr("images are sure to 0.03 s (margins: half_exposure_s, time_uncertainty_s), and nothing says how "
+                "far the camera moves in that time"));
+  const CellSetup made =
+      setup(parse_cell(with(text, "{frame: hand}", "{frame: hand, max_speed_m_s: 0.5, max_turn_deg_s: 60}"), "a.yaml"));
+  EXPECT_NEAR(made.settings.margins[1].translation_m, 0.005 + 0.5 * 0.03, 1e-12);
+  EXPECT_NEAR(made.settings.margins[1].rotation_rad, (0.1 + 60 * 0.03) * std::numbers::pi / 180, 1e-12);
+}
+
+TEST(CellFile, CamerasThatWereFoundStandWhereNobodyKnows) {
+  const std::vector<ExampleCamera> found{{.name = "camera1",
+                                          .source = "freenect",
+                                          .serial = "7",
+                                          .intrinsics = PinholeCamera{640, 480, 594, 591, 320, 240}}};
+  std::string text = example_cell(found);
+  EXPECT_THAT(test::thrown_message([&] { (void)parse_cell(text, "new.yaml"); }),
+              HasSubstr("cameras[0].pose.position_m: 'measure' must be a finite number"));
+  text = with(text, "[measure, measure, measure]", "[1.8, 0, 1.4]");
+  EXPECT_NE(test::thrown_message([&] { (void)parse_cell(text, "new.yaml"); }), "") << "look_at_m";
+  text = with(text, "[measure, measure, measure]", "[0, 0, 0.5]");
+  EXPECT_THAT(test::thrown_message([&] { (void)parse_cell(text, "new.yaml"); }), HasSubstr("margins.translation_m"));
+  text =
+      with(with(text, "translation_m: measure", "translation_m: 0.01"), "rotation_deg: measure", "rotation_deg: 0.2");
+  EXPECT_FALSE(parse_cell(text, "new.yaml").cameras[0].intrinsics) << "usual ones are not this camera's";
 }
 
 }  // namespace

@@ -82,6 +82,15 @@ TEST(CellCameras, ANewFileHoldsThoseThatAreFound) {
   EXPECT_THAT(text, HasSubstr("  - name: camera2  # Intel RealSense D435\n    source: realsense\n    serial: \"222\"\n"
                               "    intrinsics: {width_px: 640, height_px: 480, fx_px: 385.000, fy_px: 386.000, "
                               "cx_px: 319.500, cy_px: 239.500}   # the camera's own\n"));
+  for (const char* command : {"cell check cell.yaml", "run cell.yaml --seconds 0.1"}) {
+    EXPECT_THAT(run_command(command, folder, kFakeRealSense).err,
+                HasSubstr("pose.position_m: 'measure' must be a finite number"));
+  }
+  for (int camera = 0; camera < 2; ++camera) {
+    edit(folder, "cell.yaml", "position_m: [measure, measure, measure]", "position_m: [1.8, 0, 1.4]");
+    edit(folder, "cell.yaml", "look_at_m: [measure, measure, measure]", "look_at_m: [0, 0, 0.5]");
+    edit(folder, "cell.yaml", "translation_m: measure, rotation_deg: measure", "translation_m: 0.01, rotation_deg: 1");
+  }
   edit(folder, "cell.yaml", "urdf: panda.urdf", "urdf: kuka_lwr4");
   edit(folder, "cell.yaml", "tool: panda_hand", "tool: lwr_7_link");
   const CommandResult show = run_command("cell show cell.yaml", folder);
