@@ -23,7 +23,33 @@ std::string some_or(const std::vector<std::string>& serials) {
   return text;
 }
 
-void say_nothing(freenect::Context* /*context*/, int /*level*/, const char* /*words*/) {}
+struct Images {
+  std::uint32_t ticks = 0;   ///< of the newest
+  std::int64_t count = 0;    ///< since it was taken
+  int images_with_gaps = 0;  ///< of those that come next
+  bool has_gaps = false;     ///< the newest one
+};
+
+/// libfreenect calls from within its function for events, which next() calls: so the thread knows whose image it is.
+thread_local Images* listening = nullptr;
+
+void on_depth(freenect::Device* /*device*/, void* /*pixels*/, std::uint32_t ticks) {
+  if (listening != nullptr) {
+    listening->ticks = ticks;
+    ++listening->count;
+    listening->has_gaps = listening->images_with_gaps > 0;
+    listening->images_with_gaps -= listening->has_gaps ? 1 : 0;
+  }
+}
+
+/// libfreenect gives an image of which packets were lost all the same: what they held stays as it was in the image
+/// before. Only its log says so, before the image comes; the loss may reach into the next one.
+void on_log(freenect::Context* /*context*/, int level, const char* /*words*/) {
+  constexpr int kThisAndTheNext = 2;
+  if (listening != nullptr && level <= freenect::kInfo) {
+    listening->images_with_gaps = kThisAndTheNext;
+  }
+}
 
 freenect::Context* new_context(const freenect::Functions& f) {
   freenect::Context* context = nullptr;
@@ -31,8 +57,8 @@ freenect::Context* new_context(const freenect::Functions& f) {
   if (result < 0 || context == nullptr) {
     fail("libfreenect does not begin (", result, "): is there a USB?");
   }
-  f.set_log_callback(context, &say_nothing);
-  f.set_log_level(context, freenect::kFatal);
+  f.set_log_callback(context, &on_log);
+  f.set_log_level(context, freenect::kInfo);
   f.select_subdevices(context, freenect::kCamera);
   return context;
 }
@@ -51,25 +77,6 @@ std::vector<std::string> serials_of(const freenect::Functions& f, freenect::Cont
   }
   f.free_device_attributes(list);
   return serials;
-}
-
-}  // namespace
-
-namespace {
-
-struct Images {
-  std::uint32_t ticks = 0;  ///< of the newest
-  std::int64_t count = 0;   ///< since it was taken
-};
-
-/// libfreenect calls from within its function for events, which next() calls: so the thread knows whose image it is.
-thread_local Images* listening = nullptr;
-
-void on_depth(freenect::Device* /*device*/, void* /*pixels*/, std::uint32_t ticks) {
-  if (listening != nullptr) {
-    listening->ticks = ticks;
-    ++listening->count;
-  }
 }
 
 }  // namespace
@@ -223,7 +230,7 @@ Reading FreenectCamera::next(DepthReading& reading, double longest_s) noexcept t
   }
   last_image_s_ = now_s;
   const double time_s = clock_->clock_s(static_cast<double>(ticks_.next(device_->images.ticks)) / kTicks_hz, now_s);
-  if (!clock_->is_settled()) {
+  if (!clock_->is_settled() || device_->images.has_gaps) {
     unsettled_ += images;
     return Reading::nothing;
   }

@@ -22,7 +22,8 @@ struct FreenectSettings {
 
 /// 640 x 480 disparities of 11 bits at 30 Hz, converted by KinectDisparity with what the device says of itself, where
 /// its library hands that on. The device states no intrinsics. Its stamps are of a clock of its own: DeviceClock, with
-/// ArrivalTimes. Ends as failed when it is unplugged, and when no image comes within two seconds.
+/// ArrivalTimes. An image of which USB packets were lost is passed over and counted as skipped, and so is the one after
+/// it, which may miss some too. Ends as failed when it is unplugged, and when no image comes within two seconds.
 class FreenectCamera final : public DepthSource {
  public:
   explicit FreenectCamera(FreenectSettings settings);
@@ -51,7 +52,7 @@ class FreenectCamera final : public DepthSource {
   Unwrapped32 ticks_;
   std::vector<std::uint16_t> depth_mm_;
   double last_image_s_ = 0;
-  std::int64_t unsettled_ = 0;
+  std::int64_t unsettled_ = 0;  ///< images that were not given, since the last one that was
   SourceInfo info_;
   std::string reason_;
 };

@@ -20,7 +20,7 @@ struct Context;
 struct Device;
 
 enum SubDevice : int { kCamera = 0x02 };
-enum LogLevel : int { kFatal = 0 };
+enum LogLevel : int { kInfo = 4 };  ///< of lost packets, and all that is worse
 enum Resolution : int { kMedium = 1 };
 enum DepthFormat : int { k11Bit = 0 };
 enum Flag : int { kMirrorDepth = 1 << 16 };
@@ -89,6 +89,8 @@ class FreenectLibrary {
  public:
   /// Throws Error.
   explicit FreenectLibrary(const std::vector<std::string>& names);
+  /// Functions of a library that is loaded: for tests that put some of their own among them.
+  explicit FreenectLibrary(const freenect::Functions& functions) : functions_(functions) {}
 
   /// One for all cameras; loaded with the first call. Throws Error.
   [[nodiscard]] static std::shared_ptr<const FreenectLibrary> shared();

@@ -23,7 +23,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr int kPixels = 640 * 480;
-constexpr int kFrames = 30;
+constexpr int kFrames = 50;  // fakenect ends the program at the end
 
 std::uint16_t raw_pixel(int frame, int index) { return static_cast<std::uint16_t>((index + 11 * frame) % 2048); }
 
@@ -42,6 +42,17 @@ void write_dump(const test::TemporaryFolder& folder) {
     image << "P5 640 480 65535\n";
     image.write(reinterpret_cast<const char*>(raw.data()), 2 * kPixels);  // NOLINT(*reinterpret-cast)
   }
+}
+
+/// One for all tests: fakenect goes on in it from one camera to the next.
+const test::TemporaryFolder& dump() {
+  static const test::TemporaryFolder folder;
+  static const bool written = [] {
+    write_dump(folder);
+    return true;
+  }();
+  (void)written;
+  return folder;
 }
 
 std::filesystem::path fakenect() {
@@ -92,12 +103,10 @@ class Freenect : public testing::Test {
     if (fakenect().empty()) {
       GTEST_SKIP() << "there is no fakenect: Debian's package libfreenect-bin";
     }
-    write_dump(folder_);
-    ASSERT_EQ(setenv("FAKENECT_PATH", folder_.path().c_str(), 1), 0);  // NOLINT(concurrency-mt-unsafe)
+    ASSERT_EQ(setenv("FAKENECT_PATH", dump().path().c_str(), 1), 0);  // NOLINT(concurrency-mt-unsafe)
     library_ = std::make_shared<const FreenectLibrary>(std::vector<std::string>{fakenect().string()});
   }
 
-  test::TemporaryFolder folder_;
   std::shared_ptr<const FreenectLibrary> library_;
 };
 
@@ -138,6 +147,50 @@ TEST_F(Freenect, EveryImageIsConvertedToTheBitWithTheDevicesTimes) {
   camera.close();
   EXPECT_EQ(camera.next(reading, 0), Reading::failed);
   camera.open();
+}
+
+// What stands between a test and the functions of fakenect, which loses nothing and logs nothing.
+freenect::OnLog log_to = nullptr;
+int log_level = -1;
+int loses_in = -1;  ///< calls until packets are lost; negative: none are
+int (*real_events)(freenect::Context*, timeval*) = nullptr;
+
+int events_with_loss(freenect::Context* context, timeval* wait) {
+  if (loses_in == 0 && log_level >= freenect::kInfo) {
+    log_to(context, freenect::kInfo, "[Stream 70] Lost 2 packets\n");
+  }
+  --loses_in;
+  return real_events(context, wait);
+}
+
+TEST_F(Freenect, AnImageWithLostPacketsIsPassedOver) {
+  freenect::Functions functions = library_->functions();
+  real_events = functions.process_events_timeout;
+  functions.process_events_timeout = &events_with_loss;
+  functions.set_log_callback = [](freenect::Context*, freenect::OnLog to) { log_to = to; };
+  functions.set_log_level = [](freenect::Context*, int level) { log_level = level; };
+  FreenectSettings settings;
+  settings.arrival.time_uncertainty_s = 0.1;
+  FreenectCamera camera(settings, std::make_shared<const FreenectLibrary>(functions));
+  camera.open();
+  const auto take = [&](DepthReading& reading) {
+    Reading found = Reading::nothing;
+    const double end_s = clock_now_s() + 20;
+    while ((found = camera.next(reading, 0.05)) == Reading::nothing && clock_now_s() < end_s) {
+    }
+    return found;
+  };
+  DepthReading reading;
+  ASSERT_EQ(take(reading), Reading::got) << camera.reason();
+  for (int n = 0; n < 3; ++n) {
+    ASSERT_EQ(take(reading), Reading::got) << camera.reason();
+    EXPECT_EQ(reading.skipped, 0) << "nothing was lost yet";
+  }
+  loses_in = 0;
+  ASSERT_EQ(take(reading), Reading::got) << camera.reason();
+  EXPECT_EQ(reading.skipped, 2);
+  ASSERT_EQ(take(reading), Reading::got) << camera.reason();
+  EXPECT_EQ(reading.skipped, 0);
 }
 
 TEST_F(Freenect, ItsClockAloneIsNotBelieved) {
