@@ -68,7 +68,8 @@ void OpenniCamera::open() {
            .clock = "the device, by the images' arrival",
            .intrinsics = std::nullopt,
            .metres_per_unit = stream->metres_per_unit(),
-           .settings = stream->settings()};
+           .settings = stream->settings(),
+           .nominal = stream->nominal()};
   stream->start();
   stream_ = std::move(stream);
   last_index_ = -1;

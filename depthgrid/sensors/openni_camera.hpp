@@ -26,9 +26,9 @@ struct OpenniSettings {
   ArrivalTimes arrival{};
 };
 
-/// Depth in millimetres at 30 Hz, not registered to colour, not mirrored. The device states no intrinsics, only a field
-/// of view. Its stamps are of a clock of its own: DeviceClock, with ArrivalTimes. Ends as failed when it is unplugged,
-/// and when no image comes within two seconds.
+/// Depth in millimetres at 30 Hz, not registered to colour, not mirrored, without filters that its driver knows of. The
+/// device states no intrinsics, only a field of view: info().nominal. Its stamps are of a clock of its own:
+/// DeviceClock, with ArrivalTimes. Ends as failed when it is unplugged, and when no image comes within two seconds.
 class OpenniCamera final : public DepthSource {
  public:
   /// `library` null: the one that all cameras share.

@@ -30,6 +30,8 @@ enum StreamProperty : int {
   kVideoMode = 3,
   kMirroring = 7,
   kNumberOfFrames = 8,
+  kHoleFilter = 0x10801004,      ///< of PrimeSense's driver, and of those that were made from it
+  kSoftwareFilter = 0x2080FF43,  ///< of Orbbec's
 };
 
 struct VideoMode {

@@ -87,8 +87,12 @@ DepthStream::DepthStream(std::shared_ptr<const OpenniLibrary> library, const Str
   serial_ = serial_of_device(f(), device_);
   serial_ = serial_.empty() ? uri_ : serial_;
   library_->check(f().create_stream(device_, kDepth, &stream_), "has no depth");
-  set_up(request);
-  read_mode(request);
+  if (request.only_looks) {
+    mode_ = {kDepth1mm, request.width_px, request.height_px, request.rate_hz};
+  } else {
+    set_up(request);
+    read_mode(request);
+  }
   (void)guard.release();
 }
 
@@ -148,7 +152,10 @@ void DepthStream::set_up(const StreamRequest& request) {
     if (!is_recording_) {
       (void)f().device_set(device_, kImageRegistration, &off, sizeof off);
     }
-    if (f().device_get(device_, kImageRegistration, &registered, &size) == kOk && registered != 0) {
+    if (f().device_get(device_, kImageRegistration, &registered, &size) != kOk) {
+      fail("does not say whether its depth images are resampled into the colour camera's view");
+    }
+    if (registered != 0) {
       fail("its depth images are resampled into the colour camera's view: switch registration off");
     }
     tell("registration off");
@@ -169,6 +176,7 @@ void DepthStream::set_up(const StreamRequest& request) {
       fail("no depth images of ", request.width_px, " x ", request.height_px, " pixels at ", request.rate_hz,
            " Hz in millimetres, there are ", modes_text(f().stream_sensor(stream_)));
     }
+    tell(filters_off());
   }
   int mirrored = request.mirrored ? 1 : 0;
   size = sizeof mirrored;
@@ -180,6 +188,38 @@ void DepthStream::set_up(const StreamRequest& request) {
     fail("does not say whether its images are mirrored");
   }
   settings_ = told;
+}
+
+// A hole that is filled is a reading that nobody took, and frees the space before it.
+std::string DepthStream::filters_off() {
+  std::string told;
+  const auto off = [&](int property, const char* name) {
+    const std::uint64_t wide = 0;  // PrimeSense's size of a number; others take the half of it
+    const std::uint32_t narrow = 0;
+    if (f().stream_set(stream_, property, &wide, sizeof wide) != kOk) {
+      (void)f().stream_set(stream_, property, &narrow, sizeof narrow);
+    }
+    std::uint64_t now = 0;
+    std::uint32_t narrow_now = 0;
+    int size = sizeof now;
+    if (f().stream_get(stream_, property, &now, &size) != kOk) {
+      size = sizeof narrow_now;
+      if (f().stream_get(stream_, property, &narrow_now, &size) != kOk) {
+        return false;
+      }
+      now = narrow_now;
+    }
+    if (now != 0) {
+      fail("its ", name, " stays on (", now, "): it invents distances where the camera has none");
+    }
+    told += (told.empty() ? "" : ", ") + std::string(name) + " off";
+    return true;
+  };
+  if (!off(kHoleFilter, "hole filter")) {
+    told = "its driver says nothing of a hole filter";
+  }
+  (void)off(kSoftwareFilter, "software filter");
+  return told;
 }
 
 void DepthStream::read_mode(const StreamRequest& request) {

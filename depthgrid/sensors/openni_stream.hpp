@@ -21,6 +21,7 @@ struct StreamRequest {
   int width_px = 640;     ///< of a device
   int height_px = 480;
   int rate_hz = 30;
+  bool only_looks = false;  ///< sets nothing in the device; start() is not for it
 };
 
 /// - Threads: one.
@@ -57,6 +58,7 @@ class DepthStream {
   [[nodiscard]] const Functions& f() const noexcept { return library_->functions(); }
   [[nodiscard]] std::string uri_of(const StreamRequest& request) const;
   void set_up(const StreamRequest& request);
+  [[nodiscard]] std::string filters_off();
   void read_mode(const StreamRequest& request);
   void close() noexcept;
   void copy(const Frame& frame);

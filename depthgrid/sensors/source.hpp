@@ -28,6 +28,7 @@ struct SourceInfo {
   std::optional<PinholeCamera> intrinsics{};  ///< of the images that next() gives; none: not a camera, or not known
   double metres_per_unit = 0.001;             ///< of 16-bit images
   std::string settings{};                     ///< what was set in the device, and what it did not take; empty: nothing
+  std::optional<PinholeCamera> nominal{};     ///< usual ones of such a device, where it does not know its own
 };
 
 /// - Threads: one.

@@ -38,6 +38,8 @@ constexpr double kHalfPi = 1.57079632679;
 std::atomic<int> registered{0};
 std::atomic<bool> is_silent{false};
 std::atomic<bool> starts_mirrored{true};
+std::atomic<int> hole_filter{1};  ///< 1: on until it is set, 2: stays on, 0: the driver knows none
+std::atomic<int> settings{0};     ///< how often a property was set
 
 class TestStream final : public oni::driver::StreamBase {
  public:
@@ -83,11 +85,18 @@ class TestStream final : public oni::driver::StreamBase {
         return give(2 * kWidth, data, size);
       case ONI_STREAM_PROPERTY_CROPPING:
         return give(OniCropping{}, data, size);
+      case oni_here::kHoleFilter:
+        return hole_filter == 0 ? ONI_STATUS_NOT_SUPPORTED : give(holes_, data, size);
       default:
         return ONI_STATUS_NOT_SUPPORTED;
     }
   }
   OniStatus setProperty(int what, const void* data, int size) override {
+    ++settings;
+    if (what == oni_here::kHoleFilter && hole_filter == 1 && size == static_cast<int>(sizeof holes_)) {
+      std::memcpy(&holes_, data, sizeof holes_);
+      return ONI_STATUS_OK;
+    }
     if (what == ONI_STREAM_PROPERTY_VIDEO_MODE && size == static_cast<int>(sizeof mode_)) {
       OniVideoMode wanted;
       std::memcpy(&wanted, data, sizeof wanted);
@@ -154,6 +163,7 @@ class TestStream final : public oni::driver::StreamBase {
 
   OniVideoMode mode_{ONI_PIXEL_FORMAT_DEPTH_1_MM, kWidth, kHeight, 30};
   OniBool mirrored_ = TRUE;
+  unsigned long long holes_ = 1;
   std::atomic<bool> runs_{false};
   std::thread thread_;
 };
@@ -180,6 +190,9 @@ class TestDevice final : public oni::driver::DeviceBase {
     }
     if (what == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) {
       const int now = registered;
+      if (now < 0) {
+        return ONI_STATUS_ERROR;
+      }
       std::memcpy(data, &now, sizeof now);
       return ONI_STATUS_OK;
     }
@@ -242,7 +255,10 @@ void test_openni_unplug(int which) {
   test_openni_there(which != 0 && TestDriver::is_there_[0], which != 1 && TestDriver::is_there_[1]);
 }
 void test_openni_silent(int silent) { is_silent = silent != 0; }
+/// Negative: the device does not say it.
 void test_openni_registered(int is) { registered = is; }
+void test_openni_hole_filter(int is) { hole_filter = is; }
+int test_openni_settings() { return settings; }
 /// Whether the device stays mirrored, whatever is asked for.
 void test_openni_mirrored(int stays) { starts_mirrored = stays != 0; }
 }

@@ -119,10 +119,13 @@ class Openni : public testing::Test {
     driver.get("test_openni_silent", silent_);
     driver.get("test_openni_registered", registered_);
     driver.get("test_openni_mirrored", mirrored_);
+    driver.get("test_openni_hole_filter", hole_filter_);
+    driver.get("test_openni_settings", settings_);
     there_(1, 0);
     silent_(0);
     registered_(0);
     mirrored_(1);
+    hole_filter_(1);
     library_ = std::make_shared<const OpenniLibrary>(std::vector<std::string>{private_openni().library().string()});
   }
   [[nodiscard]] std::unique_ptr<OpenniCamera> camera(const std::string& device = "") const {
@@ -140,6 +143,8 @@ class Openni : public testing::Test {
   void (*silent_)(int) = nullptr;
   void (*registered_)(int) = nullptr;
   void (*mirrored_)(int) = nullptr;
+  void (*hole_filter_)(int) = nullptr;
+  int (*settings_)() = nullptr;
 };
 
 void Openni::record(const fs::path& file, int images) const {
@@ -188,7 +193,7 @@ TEST_F(Openni, TheOnlyOneIsReadToTheBit) {
   source->open();
   EXPECT_EQ(source->info().name, "Tests Depth");
   EXPECT_EQ(source->info().serial, "SN1");
-  EXPECT_EQ(source->info().settings, "registration off, mirrored images are turned back here");
+  EXPECT_EQ(source->info().settings, "registration off, hole filter off, mirrored images are turned back here");
   int last = 0;
   for (int n = 0; n < 5; ++n) {
     ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
@@ -209,7 +214,7 @@ TEST_F(Openni, MirroringIsSwitchedOffWhereTheDeviceTakesIt) {
   mirrored_(0);
   const auto source = camera();
   source->open();
-  EXPECT_EQ(source->info().settings, "registration off, not mirrored");
+  EXPECT_EQ(source->info().settings, "registration off, hole filter off, not mirrored");
   DepthReading reading;
   ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
   EXPECT_GT(number_of(reading.depth), 0);
@@ -242,7 +247,35 @@ TEST_F(Openni, WhatItCannotBeUsedForIsRefused) {
   EXPECT_EQ(thrown_message([&] { OpenniCamera(settings, library_).open(); }),
             "no depth images of 320 x 480 pixels at 30 Hz in millimetres, there are 640 x 480 at 30 Hz");
   registered_(1);
-  EXPECT_THAT(thrown_message([&] { camera()->open(); }), HasSubstr("resampled into the colour camera's view"));
+  EXPECT_THAT(thrown_message([&] { camera()->open(); }), HasSubstr("resampled into the colour camera's view: "));
+  registered_(-1);
+  EXPECT_THAT(thrown_message([&] { camera()->open(); }), HasSubstr("does not say whether its depth images are"));
+}
+
+TEST_F(Openni, AFilterThatFillsHolesIsSwitchedOffOrRefused) {
+  const auto open = [&] {
+    const auto source = camera();
+    source->open();
+    return source->info().settings;
+  };
+  EXPECT_THAT(open(), HasSubstr("hole filter off"));
+  hole_filter_(0);
+  EXPECT_THAT(open(), HasSubstr("its driver says nothing of a hole filter"));
+  hole_filter_(2);
+  EXPECT_EQ(thrown_message([&] { (void)open(); }),
+            "its hole filter stays on (1): it invents distances where the camera has none");
+}
+
+TEST_F(Openni, WhoOnlyLooksSetsNothing) {
+  (void)connected_openni(library_);
+  const int before = settings_();
+  oni::StreamRequest request;
+  request.device = "test-1";
+  request.only_looks = true;
+  const oni::DepthStream stream(library_, request);
+  ASSERT_TRUE(stream.nominal());
+  EXPECT_NEAR(stream.nominal()->fx_px, 320, 1e-3) << "a right angle";
+  EXPECT_EQ(settings_(), before);
 }
 
 TEST_F(Openni, OneThatIsUnpluggedHasFailedAndComesBack) {
