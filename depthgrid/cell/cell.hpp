@@ -51,6 +51,7 @@ struct CameraEntry {
                                               ///< empty: found by recorded_as)
   std::string info_topic{};                   ///< of an MCAP file's camera_info; empty: beside the images
   double rate_hz = 30;                        ///< of a simulated camera, or of a RealSense
+  std::optional<double> metres_per_unit{};    ///< of its images' numbers; none: of the rig file, or 0.001
   std::optional<double> arrival_lag_s{};      ///< from the exposure to the arrival, at most: of stamps of the arrival
   std::filesystem::path rig_file{};           ///< says intrinsics and pose of the camera of this name
   std::optional<PinholeCamera> intrinsics{};  ///< none: from the rig file, or from the device

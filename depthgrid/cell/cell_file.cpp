@@ -20,24 +20,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<std::string_view, 12> kCellKeys{
     "name",   "cameras", "robot", "space", "policies", "v_max_m_s", "smallest_obstacle_m",
     "memory", "ask",     "ages",  "ros2",  "outputs"};
-constexpr std::array<std::string_view, 18> kCameraKeys{"camera_info",
-                                                       "name",
-                                                       "source",
-                                                       "recording",
-                                                       "recorded_as",
-                                                       "repeat",
-                                                       "serial",
-                                                       "topic",
-                                                       "rate_hz",
-                                                       "arrival_lag_s",
-                                                       "mirrored",
-                                                       "rig",
-                                                       "intrinsics",
-                                                       "pose",
-                                                       "sensor",
-                                                       "margins",
-                                                       "smallest_obstacle_m",
-                                                       "equal_images"};
+constexpr std::array<std::string_view, 19> kCameraKeys{
+    "camera_info", "name",    "source",          "recording",           "recorded_as", "repeat", "serial",
+    "topic",       "rate_hz", "metres_per_unit", "arrival_lag_s",       "mirrored",    "rig",    "intrinsics",
+    "pose",        "sensor",  "margins",         "smallest_obstacle_m", "equal_images"};
 constexpr std::array<std::string_view, 6> kIntrinsicsKeys{"width_px", "height_px", "fx_px", "fy_px", "cx_px", "cy_px"};
 constexpr std::array<std::string_view, 10> kPoseKeys{"position_m",      "look_at_m",     "up",        "rpy_deg",
                                                      "quaternion_xyzw", "frame",         "max_age_s", "image_frame",
@@ -169,8 +155,9 @@ void read_device(const Section& section, const std::filesystem::path& folder, Ca
     refuse_foreign(section, camera.source, std::array<std::string_view, 1>{"rate_hz"});
   }
   if (camera.source == SourceKind::freenect) {
-    refuse_foreign(section, camera.source, std::array<std::string_view, 1>{"recording"});
+    refuse_foreign(section, camera.source, std::array<std::string_view, 2>{"recording", "metres_per_unit"});
   }
+  camera.metres_per_unit = section.number_if("metres_per_unit", {0, 0.1, true}, "m");
   if (section.has("recording")) {
     for (const std::string_view key : {"serial", "rate_hz", "arrival_lag_s"}) {
       if (section.has(key)) {
@@ -205,8 +192,9 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
   camera.source = kind_of(section.word("source", kSources, "where the images come from: recording, simulated, ..."));
   switch (camera.source) {
     case SourceKind::recording:
-      refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 4>{"serial", "rate_hz", "arrival_lag_s", "mirrored"});
+      refuse_foreign(
+          section, camera.source,
+          std::array<std::string_view, 5>{"serial", "rate_hz", "arrival_lag_s", "mirrored", "metres_per_unit"});
       camera.recording = folder / section.text("recording", "the folder that holds a rig.json, or an MCAP file");
       camera.device = section.text("topic", "of the depth images in an MCAP file", "");
       camera.info_topic = section.text("camera_info", "of their calibration in an MCAP file", "");
@@ -215,14 +203,14 @@ void read_source(const Section& section, const std::filesystem::path& folder, Ca
       break;
     case SourceKind::simulated:
       refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 8>{"camera_info", "serial", "topic", "recording", "recorded_as",
-                                                     "repeat", "arrival_lag_s", "mirrored"});
+                     std::array<std::string_view, 9>{"camera_info", "serial", "topic", "recording", "recorded_as",
+                                                     "repeat", "arrival_lag_s", "mirrored", "metres_per_unit"});
       camera.rate_hz = section.number("rate_hz", {0, 1000, true}, "Hz", "images a second", 30);
       break;
     case SourceKind::ros2:
       refuse_foreign(section, camera.source,
-                     std::array<std::string_view, 8>{"camera_info", "serial", "recording", "recorded_as", "repeat",
-                                                     "rate_hz", "arrival_lag_s", "mirrored"});
+                     std::array<std::string_view, 9>{"camera_info", "serial", "recording", "recorded_as", "repeat",
+                                                     "rate_hz", "arrival_lag_s", "mirrored", "metres_per_unit"});
       camera.device = section.text("topic", "of the depth images, for instance /left/depth/image_rect_raw");
       break;
     default:

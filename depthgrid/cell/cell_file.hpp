@@ -30,6 +30,7 @@ struct ExampleCamera {
   std::string source;
   std::string serial{};                       ///< empty: it does not say one
   std::optional<PinholeCamera> intrinsics{};  ///< none: left open in the file
+  double metres_per_unit = 0.001;             ///< of its images
   bool is_calibrated = false;                 ///< the intrinsics are its own
   std::string sensor{};                       ///< a sensor model; empty: left open in the file
   std::string comment{};                      ///< what it is

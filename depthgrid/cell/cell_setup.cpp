@@ -123,6 +123,7 @@ RigCamera camera_of(const CameraEntry& entry, std::size_t index, std::vector<Sho
   RigCamera camera = stated_elsewhere(entry, origin);
   camera.id = entry.name;
   camera.intrinsics = entry.intrinsics.value_or(camera.intrinsics);
+  camera.metres_per_unit = entry.metres_per_unit.value_or(camera.metres_per_unit);
   camera.T_world_camera = entry.T_world_camera.value_or(camera.T_world_camera);
   if (camera.intrinsics.width_px == 0) {
     fail(entry.place,

@@ -24,6 +24,11 @@ std::string entry_of(const ExampleCamera& camera) {
   } else {
     text << "    # intrinsics: {width_px: 640, height_px: 480, fx_px: , fy_px: , cx_px: , cy_px: }   # it says none\n";
   }
+  if (camera.metres_per_unit != 0.001) {
+    std::ostringstream unit;
+    unit << camera.metres_per_unit;
+    text << "    metres_per_unit: " << unit.str() << '\n';
+  }
   // Nobody knows where it stands. What looks like a pose would be answered with.
   text << "    # measure where it stands: until numbers are here, check and run refuse this file\n"
           "    pose: {position_m: [measure, measure, measure], look_at_m: [measure, measure, measure]}"

@@ -7,6 +7,7 @@
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/usable_frame.hpp"
+#include "depthgrid/monitor/device_says.hpp"
 #include "depthgrid/monitor/source_loop.hpp"
 #include "depthgrid/sensors/clock.hpp"
 
@@ -15,21 +16,6 @@ namespace {
 
 void count(std::atomic<std::int64_t>& counter, std::int64_t by = 1) noexcept {
   counter.fetch_add(by, std::memory_order_relaxed);
-}
-
-/// A camera that says another focal length or centre than the cell: its points would lie elsewhere.
-void refuse_other_intrinsics(sensors::Source& source, const std::optional<PinholeCamera>& told,
-                             const PinholeCamera& wanted) {
-  constexpr double kCentre_px = 0.6;  // half a pixel apart are the two conventions
-  constexpr double kFocal = 0.002;
-  if (told &&
-      !(std::abs(told->fx_px - wanted.fx_px) <= kFocal * wanted.fx_px &&
-        std::abs(told->fy_px - wanted.fy_px) <= kFocal * wanted.fy_px &&
-        std::abs(told->cx_px - wanted.cx_px) <= kCentre_px && std::abs(told->cy_px - wanted.cy_px) <= kCentre_px)) {
-    source.close();
-    fail("says fx ", told->fx_px, ", fy ", told->fy_px, ", cx ", told->cx_px, ", cy ", told->cy_px,
-         " px, the cell says ", wanted.fx_px, ", ", wanted.fy_px, ", ", wanted.cx_px, ", ", wanted.cy_px);
-  }
 }
 
 }  // namespace
@@ -76,14 +62,12 @@ bool CameraLine::open() noexcept {
   try {
     source_->open();
     const sensors::SourceInfo& info = source_->info();
-    const PinholeCamera& wanted = camera_.intrinsics;
-    if (info.intrinsics &&
-        (info.intrinsics->width_px != wanted.width_px || info.intrinsics->height_px != wanted.height_px)) {
+    try {
+      refuse_other_images(info, camera_.intrinsics);
+    } catch (...) {
       source_->close();
-      fail("gives images of ", info.intrinsics->width_px, " x ", info.intrinsics->height_px, " pixels, the cell says ",
-           wanted.width_px, " x ", wanted.height_px);
+      throw;
     }
-    refuse_other_intrinsics(*source_, info.intrinsics, wanted);
     count(counters_.opened);
     check_.begin_anew();
     set_state(CameraState::waiting, "");

@@ -24,24 +24,21 @@ void find_realsense(FoundCameras& found) {
     rs2::StreamRequest request;
     request.serial = device.serial;
     request.only_looks = true;
-    noting(found, "realsense " + device.serial,
-           [&] { camera.intrinsics = rs2::Stream(library, request).intrinsics(); });
+    noting(found, "realsense " + device.serial, [&] {
+      const rs2::Stream stream(library, request);
+      camera.intrinsics = stream.intrinsics();
+      camera.metres_per_unit = stream.metres_per_unit();
+    });
     found.cameras.push_back(camera);
   }
 }
 
 void find_freenect(FoundCameras& found) {
   for (const std::string& serial : connected_freenect()) {
-    const KinectZeroPlane plane;
-    // The device computes in images of twice the size.
-    const double focal_px = 0.5 * plane.reference_distance_mm / plane.pixel_size_mm;
-    constexpr int kWidth_px = FreenectCamera::kWidth_px;
-    constexpr int kHeight_px = FreenectCamera::kHeight_px;
-    found.cameras.push_back(
-        {.source = "freenect",
-         .name = "Kinect v1",
-         .serial = serial,
-         .intrinsics = PinholeCamera{kWidth_px, kHeight_px, focal_px, focal_px, 0.5 * kWidth_px, 0.5 * kHeight_px}});
+    found.cameras.push_back({.source = "freenect",
+                             .name = "Kinect v1",
+                             .serial = serial,
+                             .intrinsics = FreenectCamera::nominal(KinectZeroPlane{})});
   }
 }
 
@@ -52,6 +49,7 @@ void find_openni(FoundCameras& found) {
         .source = "openni", .name = device.name, .serial = device.serial.empty() ? device.uri : device.serial};
     oni::StreamRequest request;
     request.device = device.uri;
+    request.only_looks = true;
     noting(found, "openni " + camera.serial, [&] { camera.intrinsics = oni::DepthStream(library, request).nominal(); });
     found.cameras.push_back(camera);
   }

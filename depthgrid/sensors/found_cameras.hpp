@@ -14,6 +14,7 @@ struct FoundCamera {
   std::string name;
   std::string serial;                         ///< or URI; empty: it does not say one
   std::optional<PinholeCamera> intrinsics{};  ///< of its depth images
+  double metres_per_unit = 0.001;             ///< of them
   bool is_calibrated = false;                 ///< else they are nominal: usual ones of such a device
 };
 

@@ -165,6 +165,11 @@ std::optional<KinectZeroPlane> FreenectCamera::Device::plane() const {
   return plane;
 }
 
+PinholeCamera FreenectCamera::nominal(const KinectZeroPlane& plane) {
+  const double focal_px = 0.5 * plane.reference_distance_mm / plane.pixel_size_mm;  // of images of twice the size
+  return {kWidth_px, kHeight_px, focal_px, focal_px, 0.5 * kWidth_px, 0.5 * kHeight_px};
+}
+
 FreenectCamera::FreenectCamera(FreenectSettings settings) : FreenectCamera(std::move(settings), nullptr) {}
 
 FreenectCamera::FreenectCamera(FreenectSettings settings, std::shared_ptr<const FreenectLibrary> library)
@@ -189,7 +194,8 @@ void FreenectCamera::open() {
            .intrinsics = std::nullopt,
            .metres_per_unit = kMetresPerUnit,
            .settings = plane ? "distances by the device's own reference"
-                             : "distances by a usual reference, not the device's: its library does not hand it on"};
+                             : "distances by a usual reference, not the device's: its library does not hand it on",
+           .nominal = nominal(plane.value_or(KinectZeroPlane{}))};
   device->start();
   depth_mm_.assign(device->raw.size(), 0);
   device_ = std::move(device);

@@ -21,9 +21,10 @@ struct FreenectSettings {
 };
 
 /// 640 x 480 disparities of 11 bits at 30 Hz, converted by KinectDisparity with what the device says of itself, where
-/// its library hands that on. The device states no intrinsics. Its stamps are of a clock of its own: DeviceClock, with
-/// ArrivalTimes. An image of which USB packets were lost is passed over and counted as skipped, and so is the one after
-/// it, which may miss some too. Ends as failed when it is unplugged, and when no image comes within two seconds.
+/// its library hands that on. The device states no intrinsics: info().nominal. Its stamps are of a clock of its own:
+/// DeviceClock, with ArrivalTimes. An image of which USB packets were lost is passed over and counted as skipped, and
+/// so is the one after it, which may miss some too. Ends as failed when it is unplugged, and when no image comes within
+/// two seconds.
 class FreenectCamera final : public DepthSource {
  public:
   explicit FreenectCamera(FreenectSettings settings);
@@ -36,6 +37,9 @@ class FreenectCamera final : public DepthSource {
   [[nodiscard]] const SourceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] std::string_view reason() const noexcept override { return reason_; }
   [[nodiscard]] Reading next(DepthReading& reading, double longest_s) noexcept override;
+
+  /// Usual intrinsics of a device with this plane, with the principal point in the middle: no calibration.
+  [[nodiscard]] static PinholeCamera nominal(const KinectZeroPlane& plane);
 
   static constexpr int kWidth_px = 640;
   static constexpr int kHeight_px = 480;

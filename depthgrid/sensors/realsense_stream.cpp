@@ -130,7 +130,7 @@ Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& requ
     constexpr int kFirstThatMeansIt = 21400;
     const bool is_reversed = library_->call(f().get_api_version) < kFirstThatMeansIt;
     library_->call(f().playback_set_real_time, static_cast<const Device*>(device_.get()), is_reversed ? 1 : 0);
-  } else {
+  } else if (!request.only_looks) {
     library_->call(f().set_devices_changed_callback, static_cast<const Context*>(context_.get()),
                    &Watch::on_devices_changed, watch_.begin(*this));
     set_up();

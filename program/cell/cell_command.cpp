@@ -15,6 +15,7 @@
 #include "depthgrid/cell/cell_setup.hpp"
 #include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/core/usable_frame.hpp"
+#include "depthgrid/monitor/device_says.hpp"
 #include "depthgrid/monitor/open_cell.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/found_cameras.hpp"
@@ -90,6 +91,12 @@ void look_at(const std::string& name, sensors::DepthSource& source, const RigCam
                        report::fixed(1e3 * age_s, 1) + " ms old" + ", by the clock of " + info.clock;
     if (const char* why = why_unusable(reading.depth, camera.intrinsics)) {
       fail(name, ": its image cannot be used: ", why);
+    }
+    try {
+      monitor::refuse_other_images(info, camera.intrinsics);
+      monitor::refuse_other_unit(reading.depth, camera);
+    } catch (const Error& error) {
+      fail(name, ": ", error.what());
     }
     DepthImage measured(camera.intrinsics.width_px, camera.intrinsics.height_px);
     normalise(with_stride(reading.depth), camera.rule, measured);
@@ -178,19 +185,8 @@ std::string sensor_of(const sensors::FoundCamera& camera) {
   return {};
 }
 
-void write_new(const std::string& file) {
-  const sensors::FoundCameras found = sensors::find_cameras();
-  std::vector<cell::ExampleCamera> cameras;
-  for (const sensors::FoundCamera& camera : found.cameras) {
-    cameras.push_back({.name = "camera" + std::to_string(cameras.size() + 1),
-                       .source = camera.source,
-                       .serial = camera.serial,
-                       .intrinsics = camera.intrinsics,
-                       .is_calibrated = camera.is_calibrated,
-                       .sensor = sensor_of(camera),
-                       .comment = camera.name});
-  }
-  // Exclusively: what somebody has written is not written over.
+/// Exclusively: what somebody has written is not written over.
+std::FILE* new_file(const std::string& file) {
   std::FILE* const out = std::fopen(file.c_str(), "wxe");
   if (out == nullptr) {
     std::error_code ignored;
@@ -198,6 +194,27 @@ void write_new(const std::string& file) {
                    ? ": is there already, and is not written over: choose another name"
                    : ": cannot be written: is its folder there?");
   }
+  return out;
+}
+
+void write_new(const std::string& file) {
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) {
+    (void)std::fclose(new_file(file));  // says why, before anything is looked for
+  }
+  const sensors::FoundCameras found = sensors::find_cameras();
+  std::vector<cell::ExampleCamera> cameras;
+  for (const sensors::FoundCamera& camera : found.cameras) {
+    cameras.push_back({.name = "camera" + std::to_string(cameras.size() + 1),
+                       .source = camera.source,
+                       .serial = camera.serial,
+                       .intrinsics = camera.intrinsics,
+                       .metres_per_unit = camera.metres_per_unit,
+                       .is_calibrated = camera.is_calibrated,
+                       .sensor = sensor_of(camera),
+                       .comment = camera.name});
+  }
+  std::FILE* const out = new_file(file);
   const std::string text = cell::example_cell(cameras);
   const bool written = std::fputs(text.c_str(), out) >= 0;
   if (std::fclose(out) != 0 || !written) {

@@ -50,6 +50,32 @@ TEST(CellCameras, ARealSenseIsCheckedAndRuns) {
   EXPECT_THAT(run.out, ::testing::ContainsRegex("\n  left: [1-9][0-9]* images"));
 }
 
+TEST(CellCameras, AUnitThatIsNoMillimetreIsStated) {
+  const TemporaryFolder folder;
+  const std::string tenths = kFakeRealSense + std::string("FAKE_REALSENSE_UNIT=0.0001 ");
+  (void)folder.write("cell.yaml", device_cell("source: realsense"));
+  const CommandResult check = run_command("cell check cell.yaml", folder, tenths);
+  EXPECT_EQ(check.exit_code, 1);
+  EXPECT_THAT(check.out,
+              HasSubstr("left: gives depth in units of 0.0001 m, the cell says 0.001: metres_per_unit: 0.0001"));
+  (void)folder.write("cell.yaml", device_cell("source: realsense\n    metres_per_unit: 0.0001"));
+  EXPECT_EQ(run_command("cell check cell.yaml", folder, tenths).exit_code, 0);
+  const CommandResult run = run_command("run cell.yaml --seconds 1", folder, tenths);
+  EXPECT_THAT(run.out, ::testing::ContainsRegex("\n  left: [1-9][0-9]* images"));
+  EXPECT_EQ(run_command("cell new new.yaml", folder, tenths).exit_code, 0);
+  EXPECT_THAT(read_bytes(folder / "new.yaml"), HasSubstr("\n    metres_per_unit: 0.0001\n"));
+}
+
+TEST(CellCameras, OtherIntrinsicsThanTheCamerasAreFoundByCheck) {
+  const TemporaryFolder folder;
+  std::string text = device_cell("source: realsense");
+  text.replace(text.find("fx_px: 385"), 10, "fx_px: 420");
+  (void)folder.write("cell.yaml", text);
+  const CommandResult check = run_command("cell check cell.yaml", folder, kFakeRealSense);
+  EXPECT_EQ(check.exit_code, 1);
+  EXPECT_THAT(check.out, HasSubstr("left: says fx 385, fy 386, cx 320, cy 240 px, the cell says 420"));
+}
+
 TEST(CellCameras, OneOfSeveralHasToBeNamed) {
   const TemporaryFolder folder;
   (void)folder.write("cell.yaml", device_cell("source: realsense"));

@@ -294,7 +294,10 @@ void rs2_delete_sensor(void* sensor) {
 int rs2_is_sensor_extendable_to(const void* sensor, int extension, void**) {
   return extension == 7 && static_cast<const FakeSensor*>(sensor)->options[0] == 1 ? 1 : 0;
 }
-float rs2_get_depth_scale(void*, void**) { return 0.001F; }
+float rs2_get_depth_scale(void*, void**) {
+  const char* const given = std::getenv("FAKE_REALSENSE_UNIT");
+  return given != nullptr ? std::strtof(given, nullptr) : static_cast<float>(now().metres_per_unit);
+}
 int rs2_supports_option(const void*, int option, void**) {
   return option == 12 || option == 13 || option == 18 || option == 46 || option == 53 ? 1 : 0;
 }
@@ -303,6 +306,7 @@ float rs2_get_option(const void* sensor, int option, void**) {
 }
 void rs2_set_option(const void* sensor, int option, float value, void** error) {
   guarded(error, [&] {
+    count(&FakeCounts::settings, 1);
     if (option == 12 && now().refuses_preset) {
       throw std::runtime_error("hwmon command failed");
     }

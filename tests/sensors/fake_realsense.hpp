@@ -17,6 +17,7 @@ struct FakeRealSense {
   double arrival_late_s = 0.03;  ///< the frame's arrival after the middle of the exposure
   double stall_s = 0;            ///< more that it is late, beyond the lag of the frames before; also while it runs
   int frame_width = 640;         ///< of the frames that come; also while it runs
+  double metres_per_unit = 0.001;
   bool distorts = false;
   bool refuses_preset = false;
   bool ignores_emitter = false;
@@ -34,7 +35,8 @@ struct FakeCounts {
   int frames = 0;
   int errors = 0;
   int log_severity = -1;
-  int sent = 0;  ///< frames of devices that were handed over
+  int settings = 0;  ///< how often an option was set
+  int sent = 0;      ///< frames of devices that were handed over
 
   [[nodiscard]] int objects() const { return contexts + lists + devices + sensors + frames + errors; }
 };

@@ -38,6 +38,7 @@ class RealSense : public testing::Test {
     library_ = std::make_shared<const rs2::Library>(std::vector<std::string>{FAKE_REALSENSE});
     fake_.serials = {"941322070001"};
     set_(&fake_);
+    settings_before_ = counts().settings;
   }
   ~RealSense() override { EXPECT_EQ(counts().objects(), 0) << "what the library handed out was not given back"; }
 
@@ -70,6 +71,7 @@ class RealSense : public testing::Test {
   void (*set_)(const FakeRealSense*) = nullptr;
   void (*count_)(FakeCounts*) = nullptr;
   void (*unplug_)() = nullptr;
+  int settings_before_ = 0;
 };
 
 std::uint16_t pixel(const DepthView& depth, int x, int y) {
@@ -224,6 +226,14 @@ TEST_F(RealSense, WhatItDoesNotTakeIsSaid) {
   EXPECT_EQ(source->info().settings,
             "emitter on and off 0, global time 1, laser power 150; not set: preset (librealsense2: hwmon command "
             "failed), emitter 0 in place of 1");
+}
+
+TEST_F(RealSense, WhoOnlyLooksSetsNothing) {
+  rs2::StreamRequest request;
+  request.only_looks = true;
+  const rs2::Stream stream(library_, request);
+  EXPECT_EQ(stream.intrinsics().fy_px, 386);
+  EXPECT_EQ(counts().settings, settings_before_);
 }
 
 TEST_F(RealSense, OneThatIsUnpluggedHasFailedAndComesBack) {
