@@ -212,6 +212,21 @@ TEST(DayCheck, FindsAnOverEstimate) {
   EXPECT_THAT(report.failures(), ElementsAre(HasSubstr("distances are more than the truth, by up to 0.0500 m")));
 }
 
+// With live images: what is excused is only what lies within the robot's layer, or hidden right behind it.
+TEST(DayCheck, ExcusesNoOverEstimateFarFromTheRobot) {
+  std::size_t changed = 0;
+  const DayReport report = checked(faulty_day(), [&](double time_s, const auto& truth_m, Json& answer) {
+    if (time_s > 8.5 && changed < 5 && truth_m[0] > 0.3 && truth_m[0] < 2) {
+      answer["blind_m"] = 0;
+      answer["parts"][0]["distance_m"] = truth_m[0] + 0.05;
+      ++changed;
+    }
+  });
+  ASSERT_GT(changed, 0U);
+  EXPECT_EQ(report.over_estimates, changed);
+  EXPECT_EQ(report.unclaimed, 0U);
+}
+
 TEST(DayCheck, FindsAFrozenImageThatIsUsed) {
   const DayReport report = checked(faulty_day(), [](double time_s, const auto& /*truth_m*/, Json& answer) {
     if (time_s > 3.5 && time_s < 4) {
