@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 #include <string>
 #include <thread>
 
 #include "depthgrid/core/error.hpp"
+#include "files/temporary_folder.hpp"
 
 // What the stand-in's macro makes of the component.
 std::unique_ptr<rclcpp::Node> stand_in_component(const rclcpp::NodeOptions& options);
@@ -30,6 +34,22 @@ TEST(Ros2Component, RefusesToRunWithoutACell) {
   rclcpp::NodeOptions options;
   options.parameters["cell"] = std::string("/nowhere/cell.yaml");
   EXPECT_NE(refusal(options).find("/nowhere/cell.yaml"), std::string::npos);
+}
+
+TEST(Ros2Component, TellsOfOutputsThatItDoesNotWrite) {
+  const test::TemporaryFolder folder;
+  std::ifstream example(DEPTHGRID_SOURCE "/examples/simulated_cell.yaml");
+  std::string text{std::istreambuf_iterator<char>(example), {}};
+  text.replace(text.find("outputs:\n"), 9, "outputs:\n  prometheus: cell.prom\n  record: run.mcap\n");
+  rclcpp::NodeOptions options;
+  options.parameters["cell"] = folder.write("cell.yaml", text).string();
+  options.parameters["publish"] = false;
+  const std::unique_ptr<rclcpp::Node> node = stand_in_component(options);
+  EXPECT_TRUE(std::any_of(options.log->begin(), options.log->end(), [](const std::string& line) {
+    return line.find("outputs: prometheus: ") != std::string::npos &&
+           line.find("cell.prom is not written") != std::string::npos;
+  }));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run.mcap"));
 }
 
 TEST(Ros2Component, RunsTheSimulatedCellAndTellsWhatHappens) {

@@ -7,6 +7,7 @@
 // Cameras and joints are those of the cell file. Its topics, and those of the answers, go through a node of depthgrid's
 // own in this process, which is called as this one is, with _dds behind it, and is in the same domain and namespace.
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
@@ -44,11 +45,24 @@ class CellComponent : public rclcpp::Node {
     if (cell.outputs.udp) {
       monitor_->add(depthgrid::monitor::udp_output(*cell.outputs.udp));
     }
+    if (!cell.outputs.record.empty()) {
+      monitor_->record(depthgrid::monitor::recorder(cell, setup, monitor_->names()));
+    }
+    tell_unwritten("jsonl", cell.outputs.jsonl);
+    tell_unwritten("log", cell.outputs.log);
+    tell_unwritten("prometheus", cell.outputs.prometheus);
     monitor_->start();
     timer_ = create_wall_timer(std::chrono::milliseconds(100), [this] { tell(); });
   }
 
  private:
+  void tell_unwritten(const char* key, const std::filesystem::path& output) {
+    if (!output.empty()) {
+      const std::string line =
+          std::string("outputs: ") + key + ": " + output.string() + " is not written: " + "depthgrid run writes it";
+      RCLCPP_WARN(get_logger(), "%s", line.c_str());
+    }
+  }
   void tell() {
     for (const depthgrid::monitor::Event& event : monitor_->events()) {
       const std::string line = depthgrid::monitor::event_line(event, monitor_->names());
