@@ -67,6 +67,7 @@ struct CameraEntry {
   std::string place{};                        ///< "FILE:LINE:COLUMN: cameras[0]", for messages
   SourceKind source = SourceKind::recording;
   bool repeat = false;        ///< a recording begins again at its end
+  bool is_silent = false;     ///< its recording holds no image of it
   bool mirrored = false;      ///< a recording of OpenNI2 whose images are
   bool equal_images = false;  ///< the same pixels twice in a row are no failure
 };

@@ -70,6 +70,7 @@ bool CameraLine::open() noexcept {
     }
     count(counters_.opened);
     check_.begin_anew();
+    heard_s_ = sensors::clock_now_s();
     set_state(CameraState::waiting, "");
     tell(EventKind::source_open, info.settings.empty() ? info.name : info.name + "; " + info.settings);
     return true;

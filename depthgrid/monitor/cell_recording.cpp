@@ -1,5 +1,6 @@
 #include "depthgrid/monitor/cell_recording.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <optional>
@@ -71,6 +72,13 @@ cell::Cell CellRecording::cell() const {
       read_whole_file(cell.robot->urdf, kLargestUrdf) != state_->description()) {
     fail(state_->file.string(), ": was recorded with another robot than ", cell.robot->urdf, " describes now");
   }
+  const std::string rig = text_of(state_->texts, "rig");  // empty: of an earlier version
+  const auto with_rig_file = std::find_if(cell.cameras.begin(), cell.cameras.end(),
+                                          [](const auto& camera) { return !camera.rig_file.empty(); });
+  if (!rig.empty() && with_rig_file != cell.cameras.end() && to_string(cell::setup(cell).rig) != rig) {
+    fail(state_->file.string(), ": was recorded with another calibration than ", with_rig_file->rig_file.string(),
+         " states now");
+  }
   return cell;
 }
 
@@ -88,6 +96,8 @@ cell::Cell CellRecording::played() const {
     camera.recording = state_->file;
     camera.recorded_as = camera.name;
     camera.device = recorded_images(camera.name);
+    camera.is_silent = state_->entries(camera.device).empty();
+    camera.rig_file.clear();
     camera.repeat = false;
     camera.info_topic.clear();
     camera.intrinsics.reset();  // as recorded

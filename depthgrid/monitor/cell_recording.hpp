@@ -16,7 +16,7 @@ namespace depthgrid::monitor {
 /// What became of a recording's answers that were asked again.
 struct AskedAgain {
   std::uint64_t answers = 0;  ///< in the recording
-  std::uint64_t equal = 0;    ///< every number the same, to the bit
+  std::uint64_t equal = 0;    ///< every number of every part the same, to the bit
   std::uint64_t differ = 0;
   std::uint64_t without_images = 0;  ///< an image that they stand on is not in the recording
   std::uint64_t without_joints = 0;  ///< the same of a joint state
@@ -34,7 +34,8 @@ class CellRecording {
   CellRecording& operator=(const CellRecording&) = delete;
 
   /// The cell as it ran. Relative paths in it begin where its file was, or where that is gone, beside the recording.
-  /// Throws Error as parse_cell(), and where the robot's file is another one than the recorded.
+  /// Throws Error as parse_cell(), and where the robot's file, or what a rig file states, is another one than the
+  /// recorded.
   [[nodiscard]] cell::Cell cell() const;
 
   /// The same with the recording in place of its cameras and joints. Throws Error where a camera moves.

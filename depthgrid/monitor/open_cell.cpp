@@ -25,6 +25,21 @@ namespace {
 
 using cell::SourceKind;
 
+/// Of a recorded cell, a camera that gave no image: blind, as it was.
+class SilentCamera final : public sensors::DepthSource {
+ public:
+  void open() override {}
+  void close() noexcept override {}
+  [[nodiscard]] const sensors::SourceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] std::string_view reason() const noexcept override { return {}; }
+  [[nodiscard]] sensors::Reading next(sensors::DepthReading& /*reading*/, double /*longest_s*/) noexcept override {
+    return sensors::Reading::ended;
+  }
+
+ private:
+  sensors::SourceInfo info_{.name = "no image in the recording", .serial = {}, .clock = {}};
+};
+
 /// One for everything that is recorded; null where nothing is.
 std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
   double first_s = std::numeric_limits<double>::infinity();
@@ -42,7 +57,7 @@ std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
     }
   };
   for (const cell::CameraEntry& camera : cell.cameras) {
-    if (!camera.recording.empty()) {
+    if (!camera.recording.empty() && !camera.is_silent) {
       const sensors::RecordedSpan span = span_of(camera, cell);
       first_s = std::min(first_s, span.first_s);
       last_s = std::max(last_s, span.last_s);
@@ -118,6 +133,10 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const
             std::make_unique<sensors::SimulatedCamera>(simulated, setup.rig.cameras[k], camera.rate_hz, k));
         break;
       case SourceKind::recording:
+        if (camera.is_silent) {
+          sources.cameras.push_back(std::make_unique<SilentCamera>());
+          break;
+        }
         sources.cameras.push_back(
             std::make_unique<sensors::RecordedCamera>(camera.recording, cell::recording_options(camera), playback));
         break;

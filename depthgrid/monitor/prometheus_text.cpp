@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "depthgrid/sensors/ros2_clock.hpp"
+
 namespace depthgrid::monitor {
 namespace {
 
@@ -74,7 +76,9 @@ void add_times(MetricText& out, const TimeHistogram& times, const Label& label) 
 }
 
 void add_answer(MetricText& out, const CellAnswer& answer) {
-  out.metric("stop", "gauge", "1: the newest answer says stop.");
+  out.metric("answer_time_seconds", "gauge", "Of the newest answer, since 1970: one that does not grow is over.");
+  out.value(answer.sequence > 0 ? messages::seconds(sensors::stamp_of(answer.time_s)) : std::nan(""));
+  out.metric("stop", "gauge", "1: the newest answer says stop, or there is none.");
   out.value(answer.stop ? 1 : 0);
   out.metric("distance_metres", "gauge", "The least distance of the newest answer.");
   out.value(answer.distance_m);
@@ -117,7 +121,15 @@ void add_cameras(MetricText& out, const MonitorReport& report, const CellAnswer&
 
 }  // namespace
 
-std::string prometheus_text(const Monitor& monitor, const CellAnswer& newest) {
+std::string prometheus_text(const Monitor& monitor, const CellAnswer& newest, bool has_ended) {
+  CellAnswer answer = newest;
+  if (has_ended) {
+    answer.stop = true;
+    answer.distance_m = answer.clear_m = std::nan("");
+    for (CameraBasis& camera : answer.cameras) {
+      camera.state = CameraState::ended;
+    }
+  }
   const MonitorReport report = monitor.report();
   const Names& names = monitor.names();
   MetricText out;
@@ -131,8 +143,8 @@ std::string prometheus_text(const Monitor& monitor, const CellAnswer& newest) {
   out.value(of(report.stops));
   out.metric("late_questions_total", "counter", "Questions that began more than a period late.");
   out.value(of(report.late_questions));
-  add_answer(out, newest);
-  add_cameras(out, report, newest, names);
+  add_answer(out, answer);
+  add_cameras(out, report, answer, names);
   out.metric("joint_states_total", "counter", "Joint states by what became of them.");
   out.value(of(report.joints.taken), {"result", "taken"});
   out.value(of(report.joints.refused), {"result", "refused"});

@@ -6,6 +6,7 @@
 #include <deque>
 #include <exception>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
@@ -148,7 +149,8 @@ void Recorder::State::begin() {
   writer->add_metadata(kRecordedMetadata, {{"version", "1"},
                                            {"clock_ahead_ns", std::to_string(clock.ahead_ns)},
                                            {"cell_file", settings.cell_file.string()},
-                                           {"cell", settings.cell_text}});
+                                           {"cell", settings.cell_text},
+                                           {"rig", to_string(settings.rig)}});
   for (const RigCamera& camera : settings.rig.cameras) {
     CameraTopics topics;
     const std::string images_topic = recorded_images(camera.id);
@@ -295,7 +297,14 @@ Recorder::Recorder(const RecorderSettings& settings) {
   for (std::size_t k = 0; k < settings.rig.cameras.size(); ++k) {
     state_->images.push_back(std::make_unique<RecordRing<WaitingImage>>(kImageRoom, slot));
   }
-  state_->begin();
+  try {
+    state_->begin();
+  } catch (...) {  // the file is ours, and nothing is in it
+    state_->writer.reset();
+    std::error_code ignored;
+    std::filesystem::remove(settings.file, ignored);
+    throw;
+  }
 }
 
 Recorder::~Recorder() = default;

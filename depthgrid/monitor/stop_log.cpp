@@ -27,10 +27,15 @@ std::string time_of_day(double time_s) {
   return result + std::string(3 - part.size(), '0') + part + "Z";
 }
 
-/// How far off the nearest point may have been measured: by the camera's readings and by its pose. NaN: no camera has.
-double sensor_m(const Reason& reason, const Rig& rig) {
+/// How far off the nearest point may have been measured: by the camera's readings and by its pose. NaN: no camera has,
+/// or nobody knows from where.
+double sensor_m(const Reason& reason, const StopLogSettings& settings) {
+  const Rig& rig = settings.rig;
   const auto& camera = reason.nearest.camera;
   if (!camera || *camera >= rig.cameras.size() || !rig.cameras[*camera].margins) {
+    return Proximity::kNaN;
+  }
+  if (*camera < settings.moves.size() && settings.moves[*camera]) {
     return Proximity::kNaN;
   }
   const RigCamera& of = rig.cameras[*camera];
@@ -50,7 +55,7 @@ std::string stop_log_line(const Event& event, const StopLogSettings& settings) {
   settings.stopping_s ? terms.add(*settings.stopping_s, " s") : terms.add("not stated, within the limit");
   terms.add("; robot ").add(reason.part_speed_m_s, " m/s, moved up to ");
   terms.add(reason.part_motion_m, " m since its joint state; sensor ");
-  terms.add(sensor_m(reason, settings.rig), " m; stops at ").add(reason.blind_m + reason.stop_m, " m: blind layer ");
+  terms.add(sensor_m(reason, settings), " m; stops at ").add(reason.blind_m + reason.stop_m, " m: blind layer ");
   terms.add(reason.blind_m, " m + limit ").add(reason.stop_m, " m");
   return time_of_day(event.time_s) + " " + printable(event_line(event, settings.names)) + std::string(terms.text());
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "depthgrid/core/rig.hpp"
 #include "depthgrid/monitor/event.hpp"
@@ -13,6 +14,7 @@ namespace depthgrid::monitor {
 struct StopLogSettings {
   Names names{};
   Rig rig{};
+  std::vector<bool> moves{};           ///< cameras that /tf places: where they were is not in the rig; empty: none
   std::optional<double> stopping_s{};  ///< what the robot takes to stand still, as the cell's file declares it
 };
 

@@ -14,9 +14,12 @@ namespace depthgrid::program {
 
 Records::Records(const cell::Cell& cell, const cell::CellSetup& setup, const monitor::Monitor& monitor)
     : monitor_(monitor),
-      settings_{.names = monitor.names(), .rig = setup.rig, .stopping_s = cell.ask.stopping_s},
+      settings_{.names = monitor.names(), .rig = setup.rig, .moves = {}, .stopping_s = cell.ask.stopping_s},
       log_name_(cell.outputs.log),
       numbers_(cell.outputs.prometheus) {
+  for (const cell::CameraEntry& camera : cell.cameras) {
+    settings_.moves.push_back(!camera.frame.empty());
+  }
   if (!log_name_.empty()) {
     log_.reset(std::fopen(log_name_.c_str(), "ae"));
     if (log_ == nullptr) {
@@ -40,15 +43,17 @@ void Records::event(const monitor::Event& event) {
   }
 }
 
-void Records::write_numbers(const monitor::CellAnswer& newest) {
+void Records::write_numbers(const monitor::CellAnswer& newest, bool has_ended) {
   if (numbers_.empty()) {
     return;
   }
   try {
     OutputFile file(numbers_.string());
-    file.write(monitor::prometheus_text(monitor_, newest));
+    file.write(monitor::prometheus_text(monitor_, newest, has_ended));
     file.commit();
   } catch (const Error& error) {
+    std::error_code ignored;
+    std::filesystem::remove(numbers_, ignored);  // old ones would say for ever what was
     warn(std::string(error.what()) + "; no numbers for Prometheus any more");
     numbers_.clear();
   }
@@ -58,10 +63,10 @@ void Records::look(const monitor::CellAnswer& newest) {
   const double now_s = sensors::clock_now_s();
   if (now_s >= next_s_) {
     next_s_ = now_s + 1;
-    write_numbers(newest);
+    write_numbers(newest, false);
   }
 }
 
-void Records::end(const monitor::CellAnswer& newest) { write_numbers(newest); }
+void Records::end(const monitor::CellAnswer& newest) { write_numbers(newest, true); }
 
 }  // namespace depthgrid::program

@@ -21,11 +21,11 @@ class Records {
   void event(const monitor::Event& event);
   /// Now and then: once a second the numbers are written.
   void look(const monitor::CellAnswer& newest);
-  /// The numbers as they are at the end.
+  /// The numbers as they are at the end: nobody answers any more.
   void end(const monitor::CellAnswer& newest);
 
  private:
-  void write_numbers(const monitor::CellAnswer& newest);
+  void write_numbers(const monitor::CellAnswer& newest, bool has_ended);
 
   const monitor::Monitor& monitor_;
   monitor::StopLogSettings settings_;

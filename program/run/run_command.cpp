@@ -206,9 +206,6 @@ std::vector<std::string> add_outputs(const cell::Cell& cell, const cell::CellSet
     monitor.add(std::make_unique<JsonLines>(cell.outputs.jsonl, monitor.names()));
     outputs.push_back(cell.outputs.jsonl.string());
   }
-  if (!cell.outputs.record.empty()) {
-    monitor.record(monitor::recorder(cell, setup, monitor.names()));
-  }
   return outputs;
 }
 
@@ -232,6 +229,9 @@ void run_cell(const RunOptions& options) {
   monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup, ros2));
   const std::vector<std::string> outputs = add_outputs(cell, setup, ros2, monitor);
   Records records(cell, setup, monitor);
+  if (!cell.outputs.record.empty()) {  // last: where another output cannot be written no recording is left behind
+    monitor.record(monitor::recorder(cell, setup, monitor.names()));
+  }
   Teller teller(cell.outputs.terminal, monitor.names());
   ask_before_the_end();
   const double begin_s = sensors::clock_now_s();
@@ -269,6 +269,10 @@ void run(const RunOptions& options) {
   if (options.seconds && !(*options.seconds > 0)) {
     fail_usage("--seconds ", *options.seconds, ": must be above 0");
   }
+  if (options.again && (options.seconds || !options.record.empty())) {
+    fail_usage("--again asks what was recorded, all of it: ", options.seconds ? "--seconds" : "--record",
+               " says nothing beside it");
+  }
   if (!options.again) {
     run_cell(options);
   } else if (is_recording(options)) {
@@ -289,8 +293,9 @@ void add_run_command(CLI::App& app) {
       ->required();
   command.add_option("--record", options->record,
                      "makes this MCAP file: images, joint states, answers and events, as ROS 2 records them");
-  command.add_flag("--again", options->again,
-                   "of a recording: asks each recorded answer again, and says whether all are the same to the bit");
+  command.add_flag(
+      "--again", options->again,
+      "of a recording: asks each recorded answer again, and says whether the parts' numbers are the same to the bit");
   command.add_option("--seconds", options->seconds, "ends after this many seconds (default: Ctrl-C ends it)");
   command.footer(
       "Reads the cell file, opens its cameras and joints, and answers at a fixed rate how far the robot's links are "

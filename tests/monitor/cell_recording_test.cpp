@@ -49,6 +49,7 @@ struct Options {
   double seconds = 1.5;
   bool moves = false;
   test::Fault fault = test::Fault::none;  ///< of the first camera, in the second half
+  bool from_the_start = false;            ///< and in the first
 };
 
 void record(const std::filesystem::path& file, const std::string& text, const Options& options = {}) {
@@ -56,7 +57,7 @@ void record(const std::filesystem::path& file, const std::string& text, const Op
   cell.outputs.record = file;
   const cell::CellSetup setup = cell::setup(cell);
   Sources sources = make_sources(cell, setup, nullptr);
-  std::atomic<test::Fault> fault{test::Fault::none};
+  std::atomic<test::Fault> fault{options.from_the_start ? options.fault : test::Fault::none};
   if (options.moves) {
     sources.cameras[1] =
         std::make_unique<MovingCamera>(std::move(sources.cameras[1]), setup.rig.cameras[1].T_world_camera);
@@ -93,6 +94,7 @@ TEST(CellRecording, ACameraThatMovesIsWhereItWas) {
   record(folder / "run.mcap", test::small_cell(), {.seconds = 2, .moves = true});
   const AskedAgain again = asked(folder / "run.mcap");
   EXPECT_EQ(again.differ, 0U) << again.first_difference;
+  EXPECT_GT(again.equal, 20U);
   EXPECT_EQ(again.equal, again.answers);
   EXPECT_THAT(test::thrown_message([&] { (void)CellRecording(folder / "run.mcap").played(); }),
               HasSubstr("camera 'back' moves, and only cameras that stand are played"));
@@ -104,6 +106,7 @@ TEST(CellRecording, ACameraThatFailedIsBlindAgain) {
     record(folder / "run.mcap", test::small_cell(), {.seconds = 2, .fault = fault});
     const AskedAgain again = asked(folder / "run.mcap");
     EXPECT_EQ(again.differ, 0U) << test::name_of(fault) << ": " << again.first_difference;
+    EXPECT_GT(again.equal, 20U) << test::name_of(fault);
     EXPECT_EQ(again.equal, again.answers) << test::name_of(fault);
   }
 }
@@ -151,6 +154,40 @@ TEST(CellRecording, WhatCannotBeAskedSaysWhy) {
   record(folder / "memory.mcap", text, {.seconds = 0.2});
   EXPECT_THAT(test::thrown_message([&] { (void)asked(folder / "memory.mcap"); }),
               HasSubstr("memory.mcap: the cell has a memory"));
+}
+
+TEST(CellRecording, AnotherCalibrationIsRefused) {
+  const test::TemporaryFolder folder;
+  const auto write_rig = [&](const char* z) {
+    (void)folder.write("rig.json", std::string(R"({"name": "r", "cameras": [{"id": "front", "width": 96, "height": 72,
+      "fx": 75, "fy": 75, "cx": 47.5, "cy": 35.5, "metres_per_unit": 0.001, "sensor": "ideal",
+      "T_world_cam": [[1,0,0,0],[0,1,0,0],[0,0,1,)") +
+                                       z + "],[0,0,0,1]]}]}");
+  };
+  write_rig("-2");
+  std::string text = test::small_cell();
+  const std::size_t at = text.find("    intrinsics:");
+  text.replace(at, text.find("    sensor:", at) - at, "    rig: " + (folder / "rig.json").string() + "\n");
+  record(folder / "run.mcap", text, {.seconds = 0.2});
+  EXPECT_EQ(CellRecording(folder / "run.mcap").cell().cameras.size(), 2U);
+  EXPECT_TRUE(CellRecording(folder / "run.mcap").played().cameras[0].rig_file.empty()) << "as recorded";
+  write_rig("-2.01");
+  EXPECT_THAT(test::thrown_message([&] { (void)CellRecording(folder / "run.mcap").cell(); }),
+              HasSubstr("rig.json states now"));
+}
+
+TEST(CellRecording, ACameraThatGaveNoImageIsBlindAgain) {
+  const test::TemporaryFolder folder;
+  record(folder / "run.mcap", test::small_cell(), {.fault = test::Fault::drop, .from_the_start = true});
+  const CellRecording recording(folder / "run.mcap");
+  const cell::Cell cell = recording.played();
+  EXPECT_TRUE(cell.cameras[0].is_silent);
+  EXPECT_FALSE(cell.cameras[1].is_silent);
+  const cell::CellSetup setup = cell::setup(recording.cell());
+  Sources sources = make_sources(cell, setup, nullptr);
+  sensors::DepthReading reading;
+  sources.cameras[0]->open();
+  EXPECT_EQ(sources.cameras[0]->next(reading, 0), sensors::Reading::ended);
 }
 
 TEST(CellRecording, ItIsPlayedInPlaceOfItsCamerasAndJoints) {

@@ -124,10 +124,13 @@ TEST(Recorder, ACutFileIsReadUpToThereWithWhatItsAnswersStandOn) {
     for (const files::McapEntry& entry : reader.entries(reader.channel("/front/depth/image_raw")->id)) {
       images.insert(static_cast<std::int64_t>(entry.log_time_ns));
     }
+    std::size_t with_image = 0;
     for (const messages::Distances& answer : answers_of(reader)) {
       const std::int64_t stamp = messages::nanoseconds(answer.image_stamps.at(0));
       EXPECT_TRUE(stamp == 0 || images.contains(stamp));
+      with_image += stamp != 0 ? 1 : 0;
     }
+    EXPECT_TRUE(part < 0.5 || with_image > 0) << "nothing was looked at";
   }
 }
 
@@ -164,6 +167,19 @@ TEST(Recorder, ADiskThatIsFullIsToldAndTheCellRunsOn) {
                                 HasSubstr("; nothing more is recorded"))));
   files::McapReader reader(folder / "run.mcap");
   EXPECT_EQ(reader.metadata().at("depthgrid").at("cell"), test::small_cell());
+}
+
+TEST(Recorder, OfOneThatCannotBeginNothingIsLeft) {
+  const test::TemporaryFolder folder;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  (void)std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{.rlim_cur = 100, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string why = test::thrown_message([&] { (void)record(folder / "run.mcap", 0); });
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_THAT(why, HasSubstr("run.mcap: cannot be written"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run.mcap"));
 }
 
 TEST(Recorder, ACameraWhoseNameIsNoTopicsIsRefused) {

@@ -54,6 +54,9 @@ TEST(StopLog, SaysEveryTermAndWhatTheySumUpTo) {
               HasSubstr(" | distance 0.131 m (0.147 m at the images' time); human at most 1.6 m/s; reaction 0.01 s; "
                         "stopping 0.3 s; robot 0.42 m/s, moved up to 0.004 m since its joint state; sensor 0.027 m; "
                         "stops at 0.143 m: blind layer 0.093 m + limit 0.05 m"));
+  settings.moves = {true};
+  EXPECT_THAT(stop_log_line(event, settings), HasSubstr("sensor ? m")) << "the rig says nothing of where it was";
+  settings.moves.clear();
   event.reason.nearest.camera.reset();
   settings.stopping_s.reset();
   EXPECT_THAT(stop_log_line(event, settings), HasSubstr("stopping not stated, within the limit; robot"));
@@ -89,6 +92,18 @@ TEST(Prometheus, TextIsWellFormedAndCounts) {
   EXPECT_THAT(text, ContainsRegex("depthgrid_images_total[{]camera=\"front\",result=\"taken\"[}] [1-9]"));
   EXPECT_THAT(text, ContainsRegex("depthgrid_exposure_to_answer_seconds[{]quantile=\"0.999\"[}] [0-9]"));
   EXPECT_THAT(text, HasSubstr("# TYPE depthgrid_stop gauge\ndepthgrid_stop "));
+  EXPECT_THAT(text, ContainsRegex("\ndepthgrid_answer_time_seconds [0-9.e+]+\n"));
+  answer.stop = false;
+  answer.cameras[0].state = CameraState::live;
+  answer.cameras[0].late = false;
+  const std::string live = prometheus_text(monitor, answer);
+  EXPECT_THAT(live, HasSubstr("\ndepthgrid_stop 0\n"));
+  EXPECT_THAT(live, HasSubstr("\ndepthgrid_camera_live{camera=\"front\"} 1\n"));
+  const std::string ended = prometheus_text(monitor, answer, true);
+  EXPECT_THAT(ended, HasSubstr("\ndepthgrid_stop 1\n")) << "nobody answers any more";
+  EXPECT_THAT(ended, HasSubstr("\ndepthgrid_camera_live{camera=\"front\"} 0\n"));
+  EXPECT_THAT(ended, HasSubstr("\ndepthgrid_distance_metres NaN\n"));
+  EXPECT_THAT(prometheus_text(monitor, {}), HasSubstr("\ndepthgrid_answer_time_seconds NaN\n"));
 }
 
 }  // namespace

@@ -136,6 +136,9 @@ TEST(RunCommand, ARecordingIsPlayedToItsEndAndAskedAgain) {
   EXPECT_THAT(played.err, HasSubstr("run.mcap: is played; of the cell's outputs none but the terminal"));
   EXPECT_THAT(played.err, HasSubstr("left: at its end"));
   EXPECT_EQ(run_command("run cell.yaml --again", folder).exit_code, 2);
+  EXPECT_THAT(run_command("run run.mcap --again --seconds 1", folder).err,
+              HasSubstr("--seconds says nothing beside it"));
+  EXPECT_THAT(run_command("run run.mcap --again --record a.mcap", folder).err, HasSubstr("--record says nothing"));
   edit(folder, "cell.yaml", "recording: .,", "recording: nowhere,");
   EXPECT_EQ(run_command("run run.mcap --again", folder).exit_code, 0) << "the cell is the one that was recorded";
 }
@@ -178,8 +181,11 @@ TEST(RunCommand, LogsStopsAndKeepsNumbersForPrometheus) {
   EXPECT_THAT(read_bytes(folder / "stops.log"),
               ::testing::ContainsRegex("^before\n20[^ ]+Z (stop|go): .* m: blind layer "));
   EXPECT_THAT(read_bytes(folder / "cell.prom"), ::testing::ContainsRegex("\ndepthgrid_images_total.*taken.. [1-9]"));
+  EXPECT_THAT(read_bytes(folder / "cell.prom"), HasSubstr("\ndepthgrid_stop 1\n")) << "it has ended";
+  edit(folder, "cell.yaml", "outputs: {", "outputs: {record: run.mcap, ");
   edit(folder, "cell.yaml", "stops.log", "nowhere/stops.log");
   EXPECT_THAT(run_command("run cell.yaml --seconds 1", folder).err, HasSubstr("nowhere/stops.log: cannot be written"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run.mcap")) << "nothing half-written";
   edit(folder, "cell.yaml", "nowhere/stops.log", "stops.log");
   edit(folder, "cell.yaml", "cell.prom", "nowhere/cell.prom");
   EXPECT_THAT(run_command("run cell.yaml --seconds 1", folder).err, HasSubstr("nowhere"));
