@@ -159,11 +159,15 @@ void read_device(const Section& section, const std::filesystem::path& folder, Ca
   }
   camera.metres_per_unit = section.number_if("metres_per_unit", {0, 0.1, true}, "m");
   if (section.has("recording")) {
-    for (const std::string_view key : {"serial", "rate_hz", "arrival_lag_s"}) {
+    for (const std::string_view key : {"serial", "rate_hz"}) {
       if (section.has(key)) {
         section.refuse(key, "says nothing of a recording, remove it");
       }
     }
+    if (camera.source == SourceKind::openni && section.has("arrival_lag_s")) {
+      section.refuse("arrival_lag_s", "says nothing of a recording whose times are of the camera's clock, remove it");
+    }
+    camera.arrival_lag_s = section.number_if("arrival_lag_s", {0, 1}, "s");
     camera.recording = folder / section.text("recording", "a file of its maker's software: .bag, .oni");
     camera.repeat = section.yes("repeat", false);
     if (camera.source == SourceKind::openni) {

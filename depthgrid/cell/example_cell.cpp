@@ -35,9 +35,10 @@ std::string entry_of(const ExampleCamera& camera) {
           "   # of the depth imager, in the world\n";
   text << (camera.sensor.empty() ? "    # sensor: which of docs/sensor-models.md, or margins: {constant_m, ...}\n"
                                  : "    sensor: " + camera.sensor + "\n");
-  // Both stamp images by a clock of their own (docs/cameras.md).
+  // How well the time of an image is known: docs/cameras.md.
   text << "    margins: {translation_m: measure, rotation_deg: measure"
-       << (camera.source == "realsense" ? "" : ", time_uncertainty_s: 0.1") << "}   # how well the pose is known\n";
+       << (camera.source == "realsense" ? ", time_uncertainty_s: 0.005" : ", time_uncertainty_s: 0.1")
+       << "}   # how well the pose is known\n";
   return text.str();
 }
 

@@ -61,9 +61,9 @@ struct MadeSpan {
   bool has_own_clock = false;
 };
 
-MadeSpan made_span(const cell::CameraEntry& entry) {
+MadeSpan made_span(const cell::CameraEntry& entry, const RigCamera& camera) {
   if (entry.source == SourceKind::realsense) {
-    const sensors::RealSenseSpan span = sensors::realsense_span(entry.recording);
+    const sensors::RealSenseSpan span = sensors::realsense_span(entry.recording, arrival_of(entry, camera));
     return {.span = {span.first_s, span.last_s}, .has_own_clock = span.has_own_clock};
   }
   const sensors::OpenniSpan span = sensors::openni_span(entry.recording);
@@ -72,11 +72,11 @@ MadeSpan made_span(const cell::CameraEntry& entry) {
 
 }  // namespace
 
-sensors::RecordedSpan span_of(const cell::CameraEntry& entry, const cell::Cell& cell) {
+sensors::RecordedSpan span_of(const cell::CameraEntry& entry, const RigCamera& camera, const cell::Cell& cell) {
   if (entry.source == SourceKind::recording) {
     return sensors::recorded_span(entry.recording, cell::recording_options(entry));
   }
-  const MadeSpan made = made_span(entry);
+  const MadeSpan made = made_span(entry, camera);
   if (made.has_own_clock && !is_alone(cell)) {
     fail(entry.place,
          ": recording: its times are of the camera's own clock, so nothing says when it was recorded beside the other "
@@ -90,8 +90,9 @@ std::unique_ptr<sensors::DepthSource> device_camera(const cell::CameraEntry& ent
   const bool is_recording = !entry.recording.empty();
   switch (entry.source) {
     case SourceKind::realsense:
-      return is_recording ? std::make_unique<sensors::RealSenseRecording>(entry.recording, playback)
-                          : realsense(entry, camera);
+      return is_recording
+                 ? std::make_unique<sensors::RealSenseRecording>(entry.recording, playback, arrival_of(entry, camera))
+                 : realsense(entry, camera);
     case SourceKind::freenect:
       return freenect(entry, camera);
     case SourceKind::openni:

@@ -13,7 +13,8 @@ namespace depthgrid::monitor {
 
 /// First and last time of an entry that is a recording of any kind. Throws Error; also where its times are of a clock
 /// that another recording of the cell does not share.
-[[nodiscard]] sensors::RecordedSpan span_of(const cell::CameraEntry& entry, const cell::Cell& cell);
+[[nodiscard]] sensors::RecordedSpan span_of(const cell::CameraEntry& entry, const RigCamera& camera,
+                                            const cell::Cell& cell);
 
 /// Not open. Throws Error that names the place in the cell file.
 [[nodiscard]] std::unique_ptr<sensors::DepthSource> device_camera(

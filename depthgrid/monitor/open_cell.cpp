@@ -41,7 +41,7 @@ class SilentCamera final : public sensors::DepthSource {
 };
 
 /// One for everything that is recorded; null where nothing is.
-std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
+std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell, const cell::CellSetup& setup) {
   double first_s = std::numeric_limits<double>::infinity();
   double last_s = -std::numeric_limits<double>::infinity();
   bool repeats = false;
@@ -56,9 +56,10 @@ std::shared_ptr<const sensors::Playback> playback_of(const cell::Cell& cell) {
       fail(place, ": repeat: what was seen free at the end would be remembered at the beginning; memory: none");
     }
   };
-  for (const cell::CameraEntry& camera : cell.cameras) {
+  for (std::size_t k = 0; k < cell.cameras.size(); ++k) {
+    const cell::CameraEntry& camera = cell.cameras[k];
     if (!camera.recording.empty() && !camera.is_silent) {
-      const sensors::RecordedSpan span = span_of(camera, cell);
+      const sensors::RecordedSpan span = span_of(camera, setup.rig.cameras[k], cell);
       first_s = std::min(first_s, span.first_s);
       last_s = std::max(last_s, span.last_s);
       repeat_all(camera.repeat, camera.place);
@@ -116,7 +117,7 @@ std::shared_ptr<dds::Node> ros2_node(const cell::Cell& cell) {
 }
 
 Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const std::shared_ptr<dds::Node>& ros2) {
-  const auto playback = playback_of(cell);
+  const auto playback = playback_of(cell, setup);
   const bool simulated_joints = cell.robot && cell.robot->joints.source == SourceKind::simulated;
   const bool is_simulated =
       simulated_joints || std::any_of(cell.cameras.begin(), cell.cameras.end(),

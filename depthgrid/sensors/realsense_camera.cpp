@@ -44,6 +44,7 @@ void RealSenseCamera::open() {
   stream_ = std::move(stream);
   domain_.reset();
   device_clock_.reset();
+  opened_s_ = clock_now_s();
   last_number_ = -1;
   unsettled_ = 0;
   last_image_s_ = clock_now_s();
@@ -55,40 +56,51 @@ void RealSenseCamera::close() noexcept {
   stream_.reset();
 }
 
+void RealSenseCamera::begin_clock(int domain) {
+  arrival_lag_s_ = rs2::lag_of_stamps(domain, settings_.arrival);
+  if (domain == rs2::kSystemTime) {
+    info_.clock = "this computer, when images arrive";
+  } else if (domain == rs2::kHardwareClock) {
+    device_clock_.emplace(
+        lag_or_refuse(settings_.arrival, "the device's clock is known here by the images' arrival alone"));
+    info_.clock = "the device, by the images' arrival";
+  } else if (domain == rs2::kGlobalTime) {
+    device_clock_.emplace(0);
+    info_.clock = "the device, as librealsense2 converts it to this computer's";
+  } else {
+    fail("stamps images by a clock that is not known here (domain ", domain, ")");
+  }
+}
+
 std::optional<double> RealSenseCamera::exposed_s(const rs2::Frame* frame, double arrival_s) {
   const int domain = library_->call(library_->functions().get_frame_timestamp_domain, frame);
   if (domain_ && *domain_ != domain) {
     fail("its stamps change to another clock in mid-run (domain ", *domain_, ", then ", domain, ")");
   }
+  // Until the library has asked for the device's time once, it hands on the device's own stamps.
+  if (!domain_ && domain == rs2::kHardwareClock && stream_->has_global_time() && arrival_s - opened_s_ < kComparing_s) {
+    return std::nullopt;
+  }
   if (!domain_) {
-    if (domain == rs2::kSystemTime) {
-      arrival_lag_s_ = lag_or_refuse(
-          settings_.arrival,
-          "librealsense2 has no stamps of the device (the kernel lacks the metadata of its images), it stamps images "
-          "when they arrive");
-      info_.clock = "this computer, when images arrive";
-    } else if (domain == rs2::kHardwareClock) {
-      device_clock_.emplace(
-          lag_or_refuse(settings_.arrival, "the device's clock is known here by the images' arrival alone"));
-      info_.clock = "the device, by the images' arrival";
-    } else if (domain == rs2::kGlobalTime) {
-      info_.clock = "the device, as librealsense2 converts it to this computer's";
-    } else {
-      fail("stamps images by a clock that is not known here (domain ", domain, ")");
-    }
+    begin_clock(domain);
     domain_ = domain;
+    domain_since_s_ = arrival_s;
   }
-  const double stamp_s = rs2::stamp_s(*library_, frame);
+  const double middle_s = rs2::middle_s(*library_, frame, arrival_lag_s_, 1.0 / settings_.rate_hz);
   if (domain == rs2::kSystemTime) {
-    return clock_of_system_s(stamp_s) - arrival_lag_s_;
-  }
-  // Where it is not said, a whole period: the image may look older than it is, not newer.
-  const double middle_s = stamp_s - rs2::middle_before_stamp_s(*library_, frame).value_or(1.0 / settings_.rate_hz);
-  if (domain == rs2::kGlobalTime) {
     return clock_of_system_s(middle_s);
   }
-  const double time_s = device_clock_->clock_s(middle_s, arrival_s);
-  return device_clock_->is_settled() ? std::optional(time_s) : std::nullopt;
+  if (domain == rs2::kHardwareClock) {
+    const double time_s = device_clock_->clock_s(middle_s, arrival_s);
+    return device_clock_->is_settled() ? std::optional(time_s) : std::nullopt;
+  }
+  if (arrival_s - domain_since_s_ < kFitting_s) {
+    return std::nullopt;
+  }
+  // No image comes before its exposure has ended: stamps that say so are off by that at least, and so are their like.
+  const double time_s = clock_of_system_s(middle_s);
+  const double latest_s = arrival_s - rs2::exposure_s(*library_, frame).value_or(0) / 2;
+  return std::min(time_s, device_clock_->clock_s(time_s, latest_s));
 }
 
 Reading RealSenseCamera::silence(double now_s) {

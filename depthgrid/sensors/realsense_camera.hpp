@@ -34,7 +34,9 @@ struct RealSenseSettings {
 /// | the stamp is of          | what is done |
 /// | ------------------------ | ------------ |
 /// | global time              | the system's clock: the middle of the exposure as the device says it; else half the
-/// |                          | exposure is taken off, or a whole period where it says no exposure either |
+/// |                          | exposure is taken off, or a whole period where it says no exposure either. Never later
+/// |                          | than the arrival less half the exposure; images of the first second are passed over,
+/// |                          | since the library still compares the clocks; refused unless 5 ms are declared |
 /// | the device's own clock   | as DeviceClock, with ArrivalTimes |
 /// | the arrival, system time | refused unless ArrivalTimes says how long before that it was exposed |
 ///
@@ -54,11 +56,14 @@ class RealSenseCamera final : public DepthSource {
   [[nodiscard]] Reading next(DepthReading& reading, double longest_s) noexcept override;
 
   static constexpr double kLongestSilence_s = 2;
+  static constexpr double kComparing_s = 2;  ///< global time begins within it, or never
+  static constexpr double kFitting_s = 1;    ///< global time is worse at its beginning
 
  private:
   struct Held;  ///< the frame whose pixels were given
   [[nodiscard]] Reading silence(double now_s);
   [[nodiscard]] Reading read(DepthReading& reading);
+  void begin_clock(int domain);
   /// None: not yet known.
   [[nodiscard]] std::optional<double> exposed_s(const rs2::Frame* frame, double arrival_s);
 
@@ -68,6 +73,8 @@ class RealSenseCamera final : public DepthSource {
   std::unique_ptr<Held> held_;
   std::optional<int> domain_;
   std::optional<DeviceClock> device_clock_;
+  double domain_since_s_ = 0;
+  double opened_s_ = 0;
   double arrival_lag_s_ = 0;
   double last_image_s_ = 0;
   std::int64_t last_number_ = -1;

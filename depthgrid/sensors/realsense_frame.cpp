@@ -63,6 +63,27 @@ std::optional<double> middle_before_stamp_s(const Library& library, const Frame*
   return exposed_s ? std::optional(*exposed_s / 2) : std::nullopt;
 }
 
+double lag_of_stamps(int domain, const ArrivalTimes& declared) {
+  if (domain == kSystemTime) {
+    return lag_or_refuse(declared,
+                         "librealsense2 has no stamps of the device (the kernel lacks the metadata of its images), it "
+                         "stamps images when they arrive");
+  }
+  if (domain == kGlobalTime && !(declared.time_uncertainty_s >= kGlobalTimeError_s)) {
+    fail(
+        "librealsense2's conversion of the device's clock to this computer's is off by some milliseconds: margins: "
+        "{time_uncertainty_s: ",
+        kGlobalTimeError_s, "} or more; the cell says ", declared.time_uncertainty_s);
+  }
+  return 0;
+}
+
+double middle_s(const Library& library, const Frame* frame, double lag_s, double period_s) {
+  const int domain = library.call(library.functions().get_frame_timestamp_domain, frame);
+  const double before_s = domain == kSystemTime ? lag_s : middle_before_stamp_s(library, frame).value_or(period_s);
+  return stamp_s(library, frame) - before_s;
+}
+
 double stamp_s(const Library& library, const Frame* frame) {
   return kMillisecond_s * library.call(library.functions().get_frame_timestamp, frame);
 }

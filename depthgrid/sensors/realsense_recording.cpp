@@ -31,12 +31,6 @@ std::unique_ptr<rs2::Stream> recorded_stream(const std::filesystem::path& file,
   }
 }
 
-double exposed_s(const rs2::Library& library, const rs2::Frame* frame) {
-  const bool of_arrival =
-      library.call(library.functions().get_frame_timestamp_domain, frame) == static_cast<int>(rs2::kSystemTime);
-  return rs2::stamp_s(library, frame) - (of_arrival ? 0 : rs2::middle_before_stamp_s(library, frame).value_or(0));
-}
-
 SourceInfo info_of(const rs2::Stream& stream, const std::filesystem::path& file) {
   return {.name = stream.name() + ", recording " + file.string(),
           .serial = stream.serial(),
@@ -48,7 +42,8 @@ SourceInfo info_of(const rs2::Stream& stream, const std::filesystem::path& file)
 
 }  // namespace
 
-RealSenseSpan realsense_span(const std::filesystem::path& file, std::shared_ptr<const rs2::Library> library) {
+RealSenseSpan realsense_span(const std::filesystem::path& file, const ArrivalTimes& arrival,
+                             std::shared_ptr<const rs2::Library> library) {
   constexpr double kPatience_s = 5;
   const auto stream = recorded_stream(file, library);
   stream->start();
@@ -56,12 +51,16 @@ RealSenseSpan realsense_span(const std::filesystem::path& file, std::shared_ptr<
   if (first == nullptr) {
     fail(file.string(), ": holds no depth image");
   }
+  const int domain =
+      library->call(library->functions().get_frame_timestamp_domain, static_cast<const rs2::Frame*>(first.get()));
   RealSenseSpan span;
-  span.first_s = exposed_s(*library, first.get());
+  try {
+    span.first_s = rs2::middle_s(*library, first.get(), rs2::lag_of_stamps(domain, arrival), stream->period_s());
+  } catch (const Error& error) {
+    fail(file.string(), ": ", error.what());
+  }
   span.last_s = span.first_s + stream->duration_s();
-  span.has_own_clock =
-      library->call(library->functions().get_frame_timestamp_domain, static_cast<const rs2::Frame*>(first.get())) ==
-      static_cast<int>(rs2::kHardwareClock);
+  span.has_own_clock = domain == rs2::kHardwareClock;
   span.info = info_of(*stream, file);
   return span;
 }
@@ -72,8 +71,8 @@ struct RealSenseRecording::Frames {
 };
 
 RealSenseRecording::RealSenseRecording(std::filesystem::path file, std::shared_ptr<const Playback> playback,
-                                       std::shared_ptr<const rs2::Library> library)
-    : file_(std::move(file)), playback_(std::move(playback)), library_(std::move(library)) {}
+                                       const ArrivalTimes& arrival, std::shared_ptr<const rs2::Library> library)
+    : file_(std::move(file)), playback_(std::move(playback)), arrival_(arrival), library_(std::move(library)) {}
 
 RealSenseRecording::~RealSenseRecording() { close(); }
 
@@ -99,7 +98,9 @@ void RealSenseRecording::close() noexcept {
 }
 
 double RealSenseRecording::due_s(const rs2::Frame* frame) const {
-  return playback_->clock_s(exposed_s(*library_, frame), round_);
+  const int domain = library_->call(library_->functions().get_frame_timestamp_domain, frame);
+  const double lag_s = rs2::lag_of_stamps(domain, arrival_);
+  return playback_->clock_s(rs2::middle_s(*library_, frame, lag_s, stream_->period_s()), round_);
 }
 
 Reading RealSenseRecording::wait_for_frame(double longest_s) {

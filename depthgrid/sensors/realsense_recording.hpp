@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "depthgrid/sensors/device_clock.hpp"
 #include "depthgrid/sensors/playback.hpp"
 #include "depthgrid/sensors/source.hpp"
 
@@ -24,16 +25,18 @@ struct RealSenseSpan {
   SourceInfo info{};
 };
 
-/// What a file holds; reads its first image. Throws Error. `library` null: the one that all cameras share.
-[[nodiscard]] RealSenseSpan realsense_span(const std::filesystem::path& file,
+/// What a file holds; reads its first image. Throws Error; also where its stamps are of the arrival, or of global time,
+/// and `arrival` does not cover how far they may be off, as of a camera that is there. `library` null: the one that all
+/// cameras share.
+[[nodiscard]] RealSenseSpan realsense_span(const std::filesystem::path& file, const ArrivalTimes& arrival,
                                            std::shared_ptr<const rs2::Library> library = nullptr);
 
-/// Its first stream of 16-bit depth, lossless, with the middle of the exposure as time where the file says it. Settings
-/// are those that it was recorded with. The library reads ahead by a few images; one of version 2.13 plays at the
-/// recorded pace from open() on, whatever Playback says, and gives later images later.
+/// Its first stream of 16-bit depth, lossless. Times are as of a camera that is there: the middle of the exposure;
+/// where the file does not say it a whole period is taken off, and off stamps of the arrival what is declared. Settings
+/// are those that it was recorded with. The library reads ahead by a few images.
 class RealSenseRecording final : public DepthSource {
  public:
-  RealSenseRecording(std::filesystem::path file, std::shared_ptr<const Playback> playback,
+  RealSenseRecording(std::filesystem::path file, std::shared_ptr<const Playback> playback, const ArrivalTimes& arrival,
                      std::shared_ptr<const rs2::Library> library = nullptr);
   ~RealSenseRecording() override;
 
@@ -51,6 +54,7 @@ class RealSenseRecording final : public DepthSource {
 
   std::filesystem::path file_;
   std::shared_ptr<const Playback> playback_;
+  ArrivalTimes arrival_;
   std::shared_ptr<const rs2::Library> library_;
   std::unique_ptr<rs2::Stream> stream_;
   std::unique_ptr<Frames> frames_;

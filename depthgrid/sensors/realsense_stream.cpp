@@ -79,11 +79,11 @@ void FrameBox::put(Frame* frame) noexcept {
     has_room_.wait(lock, [this] { return is_closed_ || frames_.size() < kRoom; });
   }
   if (is_closed_) {
-    library_.functions().release_frame(frame);
+    library_->functions().release_frame(frame);
     return;
   }
   if (!keeps_order_ && !frames_.empty()) {  // the newest wins
-    library_.functions().release_frame(frames_.front());
+    library_->functions().release_frame(frames_.front());
     frames_.pop_front();
   }
   frames_.push_back(frame);
@@ -107,10 +107,65 @@ void FrameBox::close() noexcept {
   const std::scoped_lock lock(mutex_);
   is_closed_ = true;
   for (Frame* const frame : frames_) {
-    library_.functions().release_frame(frame);
+    library_->functions().release_frame(frame);
   }
   frames_.clear();
   has_room_.notify_all();
+}
+
+namespace {
+
+/// Never destroyed: the library's threads may be there until the process ends.
+struct Boxes {
+  std::mutex mutex;
+  std::uintptr_t last = 0;
+  std::map<std::uintptr_t, std::shared_ptr<FrameBox>> by_number;
+  std::deque<std::uintptr_t> outliving;
+};
+
+Boxes& boxes() {
+  static auto* const all = new Boxes;  // NOLINT(*owning-memory)
+  return *all;
+}
+
+}  // namespace
+
+NumberedBox::NumberedBox(std::shared_ptr<FrameBox> box) : box_(std::move(box)) {
+  const std::scoped_lock lock(boxes().mutex);
+  number_ = ++boxes().last;
+  boxes().by_number.emplace(number_, box_);
+}
+
+NumberedBox::~NumberedBox() {
+  constexpr std::size_t kMost = 64;
+  box_->close();
+  const std::scoped_lock lock(boxes().mutex);
+  if (!outlives_) {
+    boxes().by_number.erase(number_);
+    return;
+  }
+  boxes().outliving.push_back(number_);
+  if (boxes().outliving.size() > kMost) {
+    boxes().by_number.erase(boxes().outliving.front());
+    boxes().outliving.pop_front();
+  }
+}
+
+void* NumberedBox::number() const noexcept {
+  return reinterpret_cast<void*>(number_);  // NOLINT(*reinterpret-cast,*int-to-ptr): a number, no pointer
+}
+
+void NumberedBox::on_frame(Frame* frame, void* number) noexcept {
+  std::shared_ptr<FrameBox> box;
+  {
+    const std::scoped_lock lock(boxes().mutex);
+    const auto at = boxes().by_number.find(reinterpret_cast<std::uintptr_t>(number));  // NOLINT(*reinterpret-cast)
+    if (at == boxes().by_number.end()) {
+      return;  // the frame stays: with its stream the way to the library has gone
+    }
+    box = at->second;
+  }
+  box->put(frame);
 }
 
 Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& request)
@@ -121,7 +176,7 @@ Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& requ
       sensor_(depth_sensor()),
       profiles_(library_->call(f().get_stream_profiles, sensor_.get()), f().delete_stream_profiles_list),
       profile_(profile_of(request)),
-      box_(*library_, is_recording_) {
+      box_(std::make_shared<FrameBox>(library_, is_recording_)) {
   name_ = device_info(kName);
   serial_ = device_info(kSerialNumber);
   if (is_recording_) {
@@ -135,6 +190,9 @@ Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& requ
                    &Watch::on_devices_changed, watch_.begin(*this));
     set_up();
   }
+  int ignored = 0;
+  library_->call(f().get_stream_profile_data, profile_, &ignored, &ignored, &ignored, &ignored, &rate_hz_);
+  rate_hz_ = std::max(rate_hz_, 1);
   Intrinsics told;
   library_->call(f().get_video_stream_intrinsics, profile_, &told);
   intrinsics_ = pinhole(told);
@@ -146,7 +204,7 @@ Stream::Stream(std::shared_ptr<const Library> library, const StreamRequest& requ
 }
 
 Stream::~Stream() {
-  box_.close();  // who waits for room goes on
+  box_->close();  // who waits for room goes on
   ErrorObject* ignored = nullptr;
   const auto forget = [&] {
     if (ignored != nullptr) {
@@ -167,11 +225,13 @@ Stream::~Stream() {
     };
     while (is_started_ && std::chrono::steady_clock::now() < latest) {
       is_started_ = !has_stopped();
+      box_.outlives(!is_started_);  // nobody waited for the last frames
       std::this_thread::sleep_for(is_started_ ? kLook : kCalm);
     }
   }
   if (is_started_) {
     f().stop(sensor_.get(), &ignored);
+    box_.outlives(ignored != nullptr);
     forget();
   }
   if (is_open_) {
@@ -267,12 +327,14 @@ const Profile* Stream::profile_of(const StreamRequest& request) const {
 void Stream::set_up() {
   std::string set;
   std::string refused;
-  // What was asked for and what the device says then; nothing asked: read only.
-  const auto want = [&](int option, const char* what, std::optional<float> value) {
+  std::string decides;
+  const auto add = [](std::string& list, const std::string& words) { list += (list.empty() ? "" : ", ") + words; };
+  // What was asked for and what the device says then; nothing asked: read only. True: it is as asked.
+  const auto want = [&](int option, const char* what, std::optional<float> value, bool must) {
     const Sensor* const sensor = sensor_.get();
     try {
       if (library_->call(f().supports_option, sensor, option) == 0) {
-        return;
+        return false;
       }
       if (value) {
         library_->call(f().set_option, sensor, option, *value);
@@ -282,33 +344,39 @@ void Stream::set_up() {
       text << what << ' ' << now;
       if (value && !(std::abs(now - *value) < 1e-3F)) {
         text << " in place of " << *value;
-        refused += (refused.empty() ? "" : ", ") + text.str();
-      } else {
-        set += (set.empty() ? "" : ", ") + text.str();
+        add(must ? decides : refused, text.str());
+        return false;
       }
+      add(set, text.str());
+      return true;
     } catch (const Error& error) {
-      refused += (refused.empty() ? "" : ", ") + std::string(what) + " (" + error.what() + ")";
+      add(must ? decides : refused, std::string(what) + " (" + error.what() + ")");
+      return false;
     }
   };
   if (name().find("D4") != std::string::npos) {  // the numbers of presets are those of this family
-    want(kVisualPreset, "preset", kHighAccuracy);
+    (void)want(kVisualPreset, "preset", kHighAccuracy, true);
   }
-  want(kEmitterEnabled, "emitter", 1.0F);
-  want(kEmitterOnOff, "emitter on and off", 0.0F);
-  want(kHdrEnabled, "alternating exposures", 0.0F);
-  want(kGlobalTimeEnabled, "global time", 1.0F);
-  want(kLaserPower, "laser power", std::nullopt);
+  (void)want(kEmitterEnabled, "emitter", 1.0F, false);
+  (void)want(kEmitterOnOff, "emitter on and off", 0.0F, true);
+  (void)want(kHdrEnabled, "alternating exposures", 0.0F, true);
+  has_global_time_ = want(kGlobalTimeEnabled, "global time", 1.0F, false);
+  (void)want(kLaserPower, "laser power", std::nullopt, false);
+  if (!decides.empty()) {
+    fail("does not take what decides what its readings mean: ", decides,
+         ": close what else sets it, or try another firmware");
+  }
   settings_ = set + (refused.empty() ? "" : (set.empty() ? "not set: " : "; not set: ") + refused);
 }
 
 void Stream::start() {
   library_->call(f().open, sensor_.get(), profile_);
   is_open_ = true;
-  library_->call(f().start, static_cast<const Sensor*>(sensor_.get()), &on_frame, static_cast<void*>(&box_));
+  library_->call(f().start, static_cast<const Sensor*>(sensor_.get()), &NumberedBox::on_frame, box_.number());
   is_started_ = true;
 }
 
-Owned<Frame> Stream::take(double longest_s) { return {box_.take(longest_s), f().release_frame}; }
+Owned<Frame> Stream::take(double longest_s) { return {box_->take(longest_s), f().release_frame}; }
 
 double Stream::duration_s() const {
   constexpr double kNanosecond_s = 1e-9;
@@ -319,8 +387,6 @@ double Stream::duration_s() const {
 bool Stream::has_ended() const {
   return library_->call(f().playback_get_current_status, static_cast<const Device*>(device_.get())) == kStopped;
 }
-
-void Stream::on_frame(Frame* frame, void* box) noexcept { static_cast<FrameBox*>(box)->put(frame); }
 
 void Stream::look_whether_gone(DeviceList* removed) noexcept {
   ErrorObject* error = nullptr;

@@ -38,7 +38,8 @@ struct FoundDevice {
 /// order: then the library's thread waits.
 class FrameBox {
  public:
-  FrameBox(const Library& library, bool keeps_order) : library_(library), keeps_order_(keeps_order) {}
+  FrameBox(std::shared_ptr<const Library> library, bool keeps_order)
+      : library_(std::move(library)), keeps_order_(keeps_order) {}
   ~FrameBox() { close(); }
   FrameBox(const FrameBox&) = delete;
   FrameBox& operator=(const FrameBox&) = delete;
@@ -49,13 +50,36 @@ class FrameBox {
 
  private:
   static constexpr std::size_t kRoom = 8;
-  const Library& library_;
+  std::shared_ptr<const Library> library_;
   const bool keeps_order_;
   std::mutex mutex_;
   std::condition_variable has_frame_;
   std::condition_variable has_room_;
   std::deque<Frame*> frames_;
   bool is_closed_ = false;
+};
+
+/// The box that a number stands for, since the library may put a frame in when the stream has ended. A box whose stream
+/// the library was seen to stop is forgotten with it; of the others, which give frames back at once, the newest stay.
+class NumberedBox {
+ public:
+  explicit NumberedBox(std::shared_ptr<FrameBox> box);
+  ~NumberedBox();
+  NumberedBox(const NumberedBox&) = delete;
+  NumberedBox& operator=(const NumberedBox&) = delete;
+
+  [[nodiscard]] FrameBox& operator*() const noexcept { return *box_; }
+  [[nodiscard]] FrameBox* operator->() const noexcept { return box_.get(); }
+  /// What the library is to be given.
+  [[nodiscard]] void* number() const noexcept;
+  /// The library may call from now on although its stream ends.
+  void outlives(bool it_does) noexcept { outlives_ = it_does; }
+  static void on_frame(Frame* frame, void* number) noexcept;
+
+ private:
+  std::shared_ptr<FrameBox> box_;
+  std::uintptr_t number_ = 0;
+  bool outlives_ = false;
 };
 
 class Stream;
@@ -88,10 +112,14 @@ class Stream {
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::string& serial() const noexcept { return serial_; }
-  /// What was set in the device, as it says itself, and what it did not take: "preset 3, emitter 1; not set: ...".
+  /// What was set in the device, as it says itself, and what it did not take: "global time 1; not set: emitter 0 in
+  /// place of 1". What decides what a reading means is refused where it is not taken.
   [[nodiscard]] const std::string& settings() const noexcept { return settings_; }
   [[nodiscard]] const PinholeCamera& intrinsics() const noexcept { return intrinsics_; }
   [[nodiscard]] double metres_per_unit() const noexcept { return metres_per_unit_; }
+  [[nodiscard]] double period_s() const noexcept { return 1.0 / rate_hz_; }  ///< of the images
+  /// The device has taken it, and says so.
+  [[nodiscard]] bool has_global_time() const noexcept { return has_global_time_; }
   [[nodiscard]] double duration_s() const;  ///< of a recording
 
   /// Throws Error.
@@ -112,7 +140,6 @@ class Stream {
   void set_up();
   friend class Watch;
   void look_whether_gone(DeviceList* removed) noexcept;
-  static void on_frame(Frame* frame, void* box) noexcept;
 
   std::shared_ptr<const Library> library_;
   bool is_recording_;
@@ -122,10 +149,12 @@ class Stream {
   Owned<Sensor> sensor_;
   Owned<ProfileList> profiles_;
   const Profile* profile_ = nullptr;
-  FrameBox box_;
+  NumberedBox box_;
   Watch watch_;  ///< ends first
   bool is_open_ = false;
   bool is_started_ = false;
+  bool has_global_time_ = false;
+  int rate_hz_ = 1;
   std::string name_;
   std::string serial_;
   std::string settings_;

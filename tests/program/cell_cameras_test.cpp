@@ -22,7 +22,7 @@ cameras:
     intrinsics: {width_px: 640, height_px: 480, fx_px: 385, fy_px: 386, cx_px: 319.5, cy_px: 239.5}
     pose: {position_m: [0, 0, 0], quaternion_xyzw: [0, 0, 0, 1]}
     sensor: realsense_d435
-    margins: {translation_m: 0.005, rotation_deg: 0.1}
+    margins: {translation_m: 0.005, rotation_deg: 0.1, time_uncertainty_s: 0.005}
     )" + camera +
          R"(
 space: {low_m: [-0.5, -0.5, 0.5], high_m: [0.9, 0.5, 1.9]}
@@ -44,7 +44,7 @@ TEST(CellCameras, ARealSenseIsCheckedAndRuns) {
   EXPECT_THAT(check.out, HasSubstr("    intrinsics: {width_px: 640, height_px: 480, fx_px: 385.000, fy_px: 386.000, "
                                    "cx_px: 319.500, cy_px: 239.500}, 1.000 mm a unit\n"
                                    "    preset 3, emitter 1, emitter on and off 0, global time 1, laser power 150\n"));
-  const CommandResult run = run_command("run cell.yaml --seconds 1", folder, kFakeRealSense);
+  const CommandResult run = run_command("run cell.yaml --seconds 3", folder, kFakeRealSense);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("left: open: Intel RealSense D435; preset 3, emitter 1"));
   EXPECT_THAT(run.out, ::testing::ContainsRegex("\n  left: [1-9][0-9]* images"));
@@ -60,7 +60,7 @@ TEST(CellCameras, AUnitThatIsNoMillimetreIsStated) {
               HasSubstr("left: gives depth in units of 0.0001 m, the cell says 0.001: metres_per_unit: 0.0001"));
   (void)folder.write("cell.yaml", device_cell("source: realsense\n    metres_per_unit: 0.0001"));
   EXPECT_EQ(run_command("cell check cell.yaml", folder, tenths).exit_code, 0);
-  const CommandResult run = run_command("run cell.yaml --seconds 1", folder, tenths);
+  const CommandResult run = run_command("run cell.yaml --seconds 3", folder, tenths);
   EXPECT_THAT(run.out, ::testing::ContainsRegex("\n  left: [1-9][0-9]* images"));
   EXPECT_EQ(run_command("cell new new.yaml", folder, tenths).exit_code, 0);
   EXPECT_THAT(read_bytes(folder / "new.yaml"), HasSubstr("\n    metres_per_unit: 0.0001\n"));

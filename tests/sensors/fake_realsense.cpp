@@ -112,9 +112,10 @@ FakeFrame* frame_of(long number, double exposed_s) {
   auto* frame = new FakeFrame;
   frame->number = number;
   frame->as = now();
-  frame->domain = domain_now;
+  frame->domain = number < frame->as.hardware_first ? 0 : domain_now.load();
   frame->width = width_now;
-  const double stamp_s = exposed_s + (frame->domain == 1 ? frame->as.arrival_late_s : frame->as.stamp_late_s);
+  const double stamp_s =
+      exposed_s + frame->as.stamp_off_s + (frame->domain == 1 ? frame->as.arrival_late_s : frame->as.stamp_late_s);
   frame->stamp_ms = 1e3 * (frame->domain == 0 ? stamp_s - 1.7e9 : stamp_s);
   frame->stamp_us = static_cast<long>(1e6 * (stamp_s - 1.7e9));
   frame->pixels.resize(static_cast<std::size_t>(frame->width) * kHeight);
@@ -310,7 +311,7 @@ void rs2_set_option(const void* sensor, int option, float value, void** error) {
     if (option == 12 && now().refuses_preset) {
       throw std::runtime_error("hwmon command failed");
     }
-    if (!(option == 18 && now().ignores_emitter)) {
+    if (option != now().ignored_option) {
       const_cast<FakeSensor*>(static_cast<const FakeSensor*>(sensor))->options[option] = value;
     }
   });

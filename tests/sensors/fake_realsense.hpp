@@ -15,12 +15,14 @@ struct FakeRealSense {
   long exposure_us = 8000;       // NOLINT(*runtime-int): as of 64 bits
   double stamp_late_s = 0.012;   ///< the frame's stamp after the middle of the exposure
   double arrival_late_s = 0.03;  ///< the frame's arrival after the middle of the exposure
+  double stamp_off_s = 0;        ///< of every stamp
+  int hardware_first = 0;        ///< so many frames have stamps of the device's own clock, whatever `domain` says
   double stall_s = 0;            ///< more that it is late, beyond the lag of the frames before; also while it runs
   int frame_width = 640;         ///< of the frames that come; also while it runs
   double metres_per_unit = 0.001;
   bool distorts = false;
   bool refuses_preset = false;
-  bool ignores_emitter = false;
+  int ignored_option = -1;          ///< it stays as it is, without an error
   std::string start_error;          ///< not empty: rs2_start fails so
   bool frames_have_errors = false;  ///< rs2_get_frame_data fails
   bool is_silent = false;           ///< no frames; also while it runs

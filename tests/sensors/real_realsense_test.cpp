@@ -187,13 +187,14 @@ TEST(RealRealSense, ARecordingOfARealCameraIsReadToTheBit) {
     GTEST_SKIP() << "there is no " << file.string() << ": set DEPTHGRID_DATA to the folder that holds 'raw_recordings'";
   }
   const auto library = std::make_shared<const rs2::Library>(std::vector<std::string>{kLibrary});
-  const RealSenseSpan span = realsense_span(file, library);
+  const ArrivalTimes declared{.lag_s = {}, .time_uncertainty_s = 0.1};
+  const RealSenseSpan span = realsense_span(file, declared, library);
   ASSERT_TRUE(span.info.intrinsics);
   EXPECT_NEAR(span.info.intrinsics->fx_px, 390.43145751953125, 1e-6);
   EXPECT_NEAR(span.info.intrinsics->cx_px, 331.38787841796875 + 0.5, 1e-6);
   EXPECT_EQ(span.info.metres_per_unit, 0.001);
   const auto playback = std::make_shared<const Playback>(span.first_s, span.last_s, false, Pace::as_fast_as_asked);
-  RealSenseRecording source(file, playback, library);
+  RealSenseRecording source(file, playback, declared, library);
   source.open();
   DepthReading reading;
   double first_s = 0;

@@ -12,6 +12,7 @@
 #include "depthgrid/sensors/clock.hpp"
 #include "depthgrid/sensors/playback.hpp"
 #include "depthgrid/sensors/realsense_camera.hpp"
+#include "depthgrid/sensors/realsense_frame.hpp"
 #include "depthgrid/sensors/realsense_library.hpp"
 #include "depthgrid/sensors/realsense_recording.hpp"
 #include "depthgrid/sensors/realsense_stream.hpp"
@@ -51,7 +52,11 @@ class RealSense : public testing::Test {
     count_(&counts);
     return counts;
   }
-  [[nodiscard]] std::unique_ptr<RealSenseCamera> camera(const RealSenseSettings& settings = {}) const {
+  /// What global time needs is declared where nothing is.
+  [[nodiscard]] std::unique_ptr<RealSenseCamera> camera(RealSenseSettings settings = {}) const {
+    if (settings.arrival.time_uncertainty_s == 0) {
+      settings.arrival.time_uncertainty_s = rs2::kGlobalTimeError_s;
+    }
     return std::make_unique<RealSenseCamera>(settings, library_);
   }
   /// Until something else than nothing.
@@ -129,15 +134,42 @@ TEST_F(RealSense, TheOnlyOneIsOpenedSetUpAndRead) {
     ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
     const long number = number_of(reading.depth);  // NOLINT(*runtime-int)
     EXPECT_GT(number, last);
-    EXPECT_EQ(reading.skipped, last < 0 ? 0 : number - last - 1);
+    EXPECT_EQ(reading.skipped, number - last - 1);
     last = number;
     EXPECT_GT(reading.time_s, last_s);
     last_s = reading.time_s;
     // Exposed 30 ms before it arrived; this computer may be slow, never too quick.
     EXPECT_LT(reading.time_s, clock_now_s() - 0.029);
-    EXPECT_GT(reading.time_s, clock_now_s() - 2);
   }
   EXPECT_EQ(info.clock, "the device, as librealsense2 converts it to this computer's");
+}
+
+TEST_F(RealSense, GlobalTimeIsRefusedUnlessItsErrorIsDeclared) {
+  RealSenseCamera source({}, library_);
+  source.open();
+  DepthReading reading;
+  ASSERT_EQ(next(source, reading), Reading::failed);
+  EXPECT_THAT(std::string(source.reason()),
+              HasSubstr("is off by some milliseconds: margins: {time_uncertainty_s: 0.005}"));
+}
+
+TEST_F(RealSense, AStampAfterTheArrivalIsNotBelieved) {
+  is([](FakeRealSense& fake) { fake.stamp_off_s = 10; });
+  const auto source = camera();
+  source->open();
+  DepthReading reading;
+  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  EXPECT_LT(reading.time_s, clock_now_s() - 0.0039) << "half the exposure";
+}
+
+TEST_F(RealSense, ImagesBeforeGlobalTimeBeginsArePassedOver) {
+  is([](FakeRealSense& fake) { fake.hardware_first = 20; });
+  const auto source = camera();
+  source->open();
+  DepthReading reading;
+  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  EXPECT_EQ(source->info().clock, "the device, as librealsense2 converts it to this computer's");
+  EXPECT_GE(reading.skipped, 20);
 }
 
 TEST_F(RealSense, WhereNothingIsSaidOfTheExposureAWholePeriodIsTakenOff) {
@@ -217,15 +249,19 @@ TEST_F(RealSense, ALensThatDistortsIsRefused) {
 }
 
 TEST_F(RealSense, WhatItDoesNotTakeIsSaid) {
-  is([](FakeRealSense& fake) {
-    fake.refuses_preset = true;
-    fake.ignores_emitter = true;
-  });
-  const auto source = camera();
-  source->open();
-  EXPECT_EQ(source->info().settings,
-            "emitter on and off 0, global time 1, laser power 150; not set: preset (librealsense2: hwmon command "
-            "failed), emitter 0 in place of 1");
+  is([](FakeRealSense& fake) { fake.ignored_option = 18; });
+  {
+    const auto source = camera();
+    source->open();
+    EXPECT_EQ(source->info().settings,
+              "preset 3, emitter on and off 0, global time 1, laser power 150; not set: emitter 0 in place of 1");
+  }
+  const auto refused = [&] { return thrown_message([&] { camera()->open(); }); };
+  is([](FakeRealSense& fake) { fake.ignored_option = 46; });
+  EXPECT_THAT(refused(), HasSubstr("does not take what decides what its readings mean: emitter on and off 1 in place "
+                                   "of 0: close what else sets it"));
+  is([](FakeRealSense& fake) { fake.refuses_preset = true; });
+  EXPECT_THAT(refused(), HasSubstr("preset (librealsense2: hwmon command failed), emitter on and off 1 in place of 0"));
 }
 
 TEST_F(RealSense, WhoOnlyLooksSetsNothing) {
@@ -380,18 +416,51 @@ TEST_F(RealSense, AClockThatChangesInMidRunIsAFailure) {
   EXPECT_THAT(std::string(source->reason()), HasSubstr("a clock that is not known here (domain 7)"));
 }
 
+constexpr ArrivalTimes kDeclared{.lag_s = {}, .time_uncertainty_s = rs2::kGlobalTimeError_s};
+
+TEST_F(RealSense, TimesOfARecordingAreByTheRulesOfACamera) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "short.bag";
+  std::ofstream(file) << "fakebag 3\n";
+  const auto refused = [&] { return thrown_message([&] { (void)realsense_span(file, {}, library_); }); };
+  EXPECT_THAT(refused(), HasSubstr("short.bag: librealsense2's conversion of the device's clock"));
+  is([](FakeRealSense& fake) { fake.domain = rs2::kSystemTime; });
+  EXPECT_THAT(refused(), HasSubstr("it stamps images when they arrive, up to 0.1 s after"));
+  const ArrivalTimes late{.lag_s = 0.1, .time_uncertainty_s = 0};
+  const RealSenseSpan span = realsense_span(file, late, library_);
+  EXPECT_NEAR(span.first_s, 1.7e9 + 100 + 0.03 - 0.1, 1e-3);
+  const auto playback = std::make_shared<const Playback>(span.first_s, span.last_s, false, Pace::as_fast_as_asked);
+  DepthReading reading;
+  {
+    RealSenseRecording source(file, playback, late, library_);
+    source.open();
+    ASSERT_EQ(next(source, reading), Reading::got) << source.reason();
+    EXPECT_NEAR(reading.time_s, playback->clock_s(1.7e9 + 100 + 0.03 - 0.1, 0), 1e-3);
+  }
+  {
+    RealSenseRecording source(file, playback, {}, library_);
+    source.open();
+    EXPECT_EQ(next(source, reading), Reading::failed);
+  }
+  is([](FakeRealSense& fake) {
+    fake.domain = rs2::kHardwareClock;
+    fake.has_metadata = false;
+  });
+  EXPECT_NEAR(realsense_span(file, {}, library_).first_s, 100 + 0.012 - 1.0 / 15, 1e-3) << "a whole period";
+}
+
 TEST_F(RealSense, ARecordingGivesEveryImageInItsOrder) {
   const test::TemporaryFolder folder;
   const auto file = folder / "short.bag";
   std::ofstream(file) << "fakebag 30\n";
   is([](FakeRealSense& fake) { fake.domain = rs2::kHardwareClock; });
-  const RealSenseSpan span = realsense_span(file, library_);
+  const RealSenseSpan span = realsense_span(file, kDeclared, library_);
   EXPECT_NEAR(span.first_s, 100, 1e-3);
   EXPECT_NEAR(span.last_s - span.first_s, 1, 1e-6);
   EXPECT_TRUE(span.has_own_clock);
   EXPECT_EQ(span.info.serial, "recorded");
   const auto playback = std::make_shared<const Playback>(span.first_s, span.last_s, false, Pace::as_fast_as_asked);
-  RealSenseRecording source(file, playback, library_);
+  RealSenseRecording source(file, playback, kDeclared, library_);
   DepthReading reading;
   EXPECT_EQ(source.next(reading, 0), Reading::failed);
   source.open();
@@ -402,20 +471,71 @@ TEST_F(RealSense, ARecordingGivesEveryImageInItsOrder) {
   }
   EXPECT_EQ(next(source, reading), Reading::ended);
   EXPECT_EQ(next(source, reading), Reading::ended);
-  EXPECT_THAT(thrown_message([&] { (void)realsense_span(folder / "none.bag", library_); }),
+  EXPECT_THAT(thrown_message([&] { (void)realsense_span(folder / "none.bag", kDeclared, library_); }),
               HasSubstr("none.bag: is no file"));
   std::ofstream(folder / "other.bag") << "ROSBAG\n";
-  EXPECT_THAT(thrown_message([&] { (void)realsense_span(folder / "other.bag", library_); }),
+  EXPECT_THAT(thrown_message([&] { (void)realsense_span(folder / "other.bag", kDeclared, library_); }),
               HasSubstr("other.bag: librealsense2: not a bag file"));
+}
+
+// What a library that hands over a frame too late is made of: the frame is held back.
+rs2::OnFrame late_call = nullptr;
+void* late_user = nullptr;
+rs2::Frame* late_frame = nullptr;
+
+void hold_one_back(rs2::Frame* frame, void* user) {
+  if (late_frame == nullptr) {
+    late_frame = frame;
+    late_user = user;
+    return;
+  }
+  late_call(frame, user);
+}
+
+void (*real_start)(const rs2::Sensor*, rs2::OnFrame, void*, rs2::ErrorObject**) = nullptr;
+void (*real_stop)(const rs2::Sensor*, rs2::ErrorObject**) = nullptr;
+const char* (*real_info)(const rs2::Device*, int, rs2::ErrorObject**) = nullptr;
+
+TEST_F(RealSense, AFrameThatComesAfterTheEndIsGivenBack) {
+  rs2::Functions functions = library_->functions();
+  real_start = functions.start;
+  real_stop = functions.stop;
+  real_info = functions.get_device_info;
+  functions.start = [](const rs2::Sensor* sensor, rs2::OnFrame call, void* user, rs2::ErrorObject** error) {
+    late_call = call;
+    real_start(sensor, &hold_one_back, user, error);
+  };
+  functions.stop = [](const rs2::Sensor* sensor, rs2::ErrorObject** error) {
+    real_stop(sensor, error);
+    (void)real_info(nullptr, 99, error);  // fails
+  };
+  const auto held = std::make_shared<const rs2::Library>(functions, "one that is late");
+  const test::TemporaryFolder folder;
+  const auto file = folder / "short.bag";
+  std::ofstream(file) << "fakebag 3\n";
+  for (const bool is_recording : {true, false}) {
+    late_frame = nullptr;
+    {
+      rs2::StreamRequest request;
+      request.any_size = is_recording;
+      request.file = is_recording ? file.string() : "";
+      rs2::Stream stream(held, request);
+      stream.start();
+      EXPECT_NE(stream.take(20), nullptr);
+    }
+    const int frames = counts().frames;
+    late_call(late_frame, late_user);
+    EXPECT_EQ(counts().frames, frames - 1) << (is_recording ? "recording" : "device");
+  }
 }
 
 TEST_F(RealSense, ARecordingKeepsItsPaceAndBeginsAnew) {
   const test::TemporaryFolder folder;
   const auto file = folder / "short.bag";
   std::ofstream(file) << "fakebag 6\n";
-  const RealSenseSpan span = realsense_span(file, library_);
+  const RealSenseSpan span = realsense_span(file, kDeclared, library_);
   const auto playback = std::make_shared<const Playback>(span.first_s, span.last_s, true);
-  RealSenseRecording source(file, playback, library_);
+  RealSenseRecording source(file, playback, kDeclared, library_);
   source.open();
   DepthReading reading;
   std::int64_t images = 0;
