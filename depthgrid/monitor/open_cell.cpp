@@ -25,6 +25,14 @@ namespace {
 
 using cell::SourceKind;
 
+sensors::Ros2Place place_of(const cell::CameraEntry& camera, const std::string& world) {
+  sensors::Ros2Place place{
+      .world = world, .frame = camera.frame, .max_age_s = camera.frame_age_s, .image_frame = camera.image_frame};
+  place.max_speed_m_s = camera.frame_speed_m_s.value_or(place.max_speed_m_s);
+  place.max_turn_rad_s = camera.frame_turn_rad_s.value_or(place.max_turn_rad_s);
+  return place;
+}
+
 /// Of a recorded cell, a camera that gave no image: blind, as it was.
 class SilentCamera final : public sensors::DepthSource {
  public:
@@ -143,11 +151,7 @@ Sources make_sources(const cell::Cell& cell, const cell::CellSetup& setup, const
         break;
       case SourceKind::ros2:
         sources.cameras.push_back(
-            std::make_unique<sensors::Ros2Camera>(ros2, camera.device,
-                                                  sensors::Ros2Place{.world = cell.ros2.frame,
-                                                                     .frame = camera.frame,
-                                                                     .max_age_s = camera.frame_age_s,
-                                                                     .image_frame = camera.image_frame}));
+            std::make_unique<sensors::Ros2Camera>(ros2, camera.device, place_of(camera, cell.ros2.frame)));
         break;
       default:
         sources.cameras.push_back(device_camera(camera, setup.rig.cameras[k], playback));

@@ -26,6 +26,10 @@ bool same(const std::optional<PinholeCamera>& a, const std::optional<PinholeCame
 
 constexpr std::string_view kCompressedDepth = "/compressedDepth";
 constexpr double kLookAgain_s = 0.002;
+/// Over this time the motion is looked at. What it comes to at rest, by the joints' noise, is none.
+constexpr std::int64_t kMotion_ns = 50'000'000;
+constexpr double kStill_m = 0.001;
+constexpr double kStill_rad = 0.002;
 /// The system's clock was set: more than the two clocks drift apart between two looks.
 constexpr double kClockStep_s = 0.002;
 /// As many as come within a tenth of a second at 1 kHz.
@@ -135,12 +139,31 @@ void Ros2Camera::listen_to_frames() {
   }
 }
 
+// What the cell counts on of its motion within the exposure. Where it was before, nobody may know: at the beginning.
+void Ros2Camera::check_motion(const Pose& T_world_camera) const {
+  const PlaceAtTime before = frames_.find(place_.world, place_.frame, waiting_ns_ - kMotion_ns);
+  if (!before.T_world_frame) {
+    return;
+  }
+  constexpr double kTime_s = static_cast<double>(kMotion_ns) * 1e-9;
+  const Pose moved = before.T_world_frame->inverse(Eigen::Isometry) * T_world_camera;
+  const double moved_m = moved.translation().norm();
+  const double turned_rad = Eigen::AngleAxisd(moved.rotation()).angle();
+  if (moved_m > place_.max_speed_m_s * kTime_s + kStill_m ||
+      turned_rad > place_.max_turn_rad_s * kTime_s + kStill_rad) {
+    fail("it moves with ", moved_m / kTime_s, " m/s and turns with ", turned_rad / kTime_s,
+         " rad/s, faster than pose: {max_speed_m_s, max_turn_deg_s} says: ", place_.max_speed_m_s, " m/s, ",
+         place_.max_turn_rad_s, " rad/s");
+  }
+}
+
 Reading Ros2Camera::place_image(DepthReading& reading, double longest_s) {
   const double end_s = clock_now_s() + longest_s;
   for (;;) {
     listen_to_frames();
     PlaceAtTime place = frames_.find(place_.world, place_.frame, waiting_ns_);
     if (place.T_world_frame) {
+      check_motion(*place.T_world_frame);
       reading = *waiting_;
       reading.T_world_camera = place.T_world_frame;
       waiting_.reset();

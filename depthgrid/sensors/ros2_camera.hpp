@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,8 @@ struct Ros2Place {
   /// Between two transforms of a moving frame, and for how long after an image the later one may come.
   double max_age_s = 0.1;
   std::string image_frame{};  ///< what the images say they are taken in; empty: `frame`
+  double max_speed_m_s = std::numeric_limits<double>::infinity();   ///< faster than it may move: an image is a failure
+  double max_turn_rad_s = std::numeric_limits<double>::infinity();  ///< the same of its turning
 };
 
 /// Images of sensor_msgs/Image: 16UC1 in millimetres, 32FC1 in metres; of a topic that ends with /compressedDepth those
@@ -53,6 +56,8 @@ class Ros2Camera final : public DepthSource {
   /// Waits for the pose of the image at hand, at most so long.
   [[nodiscard]] Reading place_image(DepthReading& reading, double longest_s);
   void listen_to_frames();
+  /// Throws Error where it moved faster than is stated before the image at hand, taken from there.
+  void check_motion(const Pose& T_world_camera) const;
   /// Throws Error where no transforms lead there.
   void find_frame();
   /// Whether camera_info says something else than at the last look, or what is refused.

@@ -286,6 +286,9 @@ TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
   dds::Publisher standing = driver_.publish("/tf_static", type_of<messages::Transforms>(), dds::kLatched);
   dds::Publisher moving = driver_.publish("/tf", type_of<messages::Transforms>(), dds::kReliable);
   Ros2Camera camera(node_, "/camera/image", {.world = "world", .frame = "camera_optical", .max_age_s = 2});
+  Ros2Camera slow(node_, "/camera/image",
+                  {.world = "world", .frame = "camera_optical", .max_age_s = 2, .image_frame = {}, .max_speed_m_s = 1});
+  EXPECT_THROW(slow.open(), Error);
   const std::vector<std::uint16_t> pixels(12, 1500);
   std::string why;
   try {
@@ -303,6 +306,7 @@ TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
   };
   send(moving, frame_at("flange", "world", 1, begin_s));
   camera.open();
+  slow.open();
   DepthReading reading;
   const double exposed_s = clock_now_s();
   send(images, image_at(exposed_s, "/camera_optical"));
@@ -320,6 +324,11 @@ TEST_F(Ros2Source, ACameraIsWhereItsFrameWasAtTheExposure) {
   EXPECT_NEAR(reading.T_world_camera->translation().x(), 1.75, 1e-3) << "halfway, and its place on the flange";
   EXPECT_EQ(static_cast<const std::uint16_t*>(reading.depth.data)[11], 1500);
   Reading found = Reading::nothing;
+  DepthReading of_slow;
+  ASSERT_TRUE(becomes([&] { return (found = slow.next(of_slow, 0.05)) != Reading::nothing; }));
+  EXPECT_EQ(found, Reading::failed);
+  EXPECT_NE(slow.reason().find("faster than pose: {max_speed_m_s, max_turn_deg_s} says: 1 m/s"), std::string_view::npos)
+      << slow.reason();
   send(images, image_at(clock_now_s() + 1, "/camera_optical"));
   ASSERT_TRUE(becomes([&] { return (found = camera.next(reading, 0.05)) != Reading::nothing; }));
   EXPECT_EQ(found, Reading::failed) << "/tf is silent";
