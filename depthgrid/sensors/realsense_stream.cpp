@@ -336,6 +336,11 @@ void Stream::set_up() {
       if (library_->call(f().supports_option, sensor, option) == 0) {
         return false;
       }
+    } catch (const Error& error) {  // an older library does not know the number
+      add(refused, std::string(what) + " (" + error.what() + ")");
+      return false;
+    }
+    try {
       if (value) {
         library_->call(f().set_option, sensor, option, *value);
       }

@@ -299,7 +299,10 @@ float rs2_get_depth_scale(void*, void**) {
   const char* const given = std::getenv("FAKE_REALSENSE_UNIT");
   return given != nullptr ? std::strtof(given, nullptr) : static_cast<float>(now().metres_per_unit);
 }
-int rs2_supports_option(const void*, int option, void**) {
+int rs2_supports_option(const void*, int option, void** error) {
+  if (option > now().last_option) {
+    return guarded(error, []() -> int { throw std::runtime_error("invalid enum value"); });
+  }
   return option == 12 || option == 13 || option == 18 || option == 46 || option == 53 ? 1 : 0;
 }
 float rs2_get_option(const void* sensor, int option, void**) {

@@ -22,6 +22,7 @@ struct FakeRealSense {
   double metres_per_unit = 0.001;
   bool distorts = false;
   bool refuses_preset = false;
+  int last_option = 1000;           ///< greater ones are an error, as in older libraries
   int ignored_option = -1;          ///< it stays as it is, without an error
   std::string start_error;          ///< not empty: rs2_start fails so
   bool frames_have_errors = false;  ///< rs2_get_frame_data fails

@@ -256,6 +256,13 @@ TEST_F(RealSense, WhatItDoesNotTakeIsSaid) {
     EXPECT_EQ(source->info().settings,
               "preset 3, emitter on and off 0, global time 1, laser power 150; not set: emitter 0 in place of 1");
   }
+  is([](FakeRealSense& fake) { fake.last_option = 53; });
+  {
+    const auto source = camera();
+    source->open();
+    EXPECT_THAT(source->info().settings, HasSubstr("alternating exposures (librealsense2: invalid enum value)"))
+        << "a library that does not know it";
+  }
   const auto refused = [&] { return thrown_message([&] { camera()->open(); }); };
   is([](FakeRealSense& fake) { fake.ignored_option = 46; });
   EXPECT_THAT(refused(), HasSubstr("does not take what decides what its readings mean: emitter on and off 1 in place "
