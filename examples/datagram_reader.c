@@ -1,6 +1,6 @@
 /* A controller that reads nothing of depthgrid but its datagrams, in C.
  *
- *   cc -std=c99 -O2 datagram_reader.c -o datagram_reader
+ *   cc -std=c99 -O2 -I .. datagram_reader.c -o datagram_reader      (-I ..: where depthgrid is not installed)
  *   ./datagram_reader 47000 5            # in another shell: depthgrid run CELL, with outputs: {udp: {port: 47000}}
  *
  * What a controller has to see to by itself: an answer that does not come, comes late, or says stop. Here 20 ms without

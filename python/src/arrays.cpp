@@ -1,5 +1,6 @@
 #include "arrays.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -38,6 +39,22 @@ DoublesIn as_doubles(nb::handle array, const char* name) {
   }
 }
 
+/// Of a float image, by some of its pixels: whether it is in millimetres. Nothing that is measured is so far away.
+bool is_in_millimetres(const DepthView& view) {
+  constexpr int kSteps = 16;
+  constexpr float kFarthest_m = 100;
+  int far = 0;
+  int all = 0;
+  for (int i = 0; i < kSteps * kSteps; ++i) {
+    const std::ptrdiff_t v = static_cast<std::ptrdiff_t>(i / kSteps) * view.height_px / kSteps;
+    const std::ptrdiff_t u = static_cast<std::ptrdiff_t>(i % kSteps) * view.width_px / kSteps;
+    const float depth = reinterpret_cast<const float*>(static_cast<const char*>(view.data) + v * view.stride_bytes)[u];
+    all += std::isfinite(depth) && depth > 0 ? 1 : 0;
+    far += std::isfinite(depth) && depth > kFarthest_m ? 1 : 0;
+  }
+  return 2 * far > all;
+}
+
 }  // namespace
 
 DepthView depth_of(const AnyArray& image, double metres_per_unit) {
@@ -65,6 +82,9 @@ DepthView depth_of(const AnyArray& image, double metres_per_unit) {
   view.height_px = static_cast<int>(image.shape(0));
   view.stride_bytes = (image.shape(0) > 1 ? image.stride(0) : width) * size;
   view.metres_per_unit = metres_per_unit;
+  if (!is_units && is_in_millimetres(view)) {
+    fail("depth is float32, so metres, and most of it is farther than 100 m: is it in millimetres? depth / 1000");
+  }
   return view;
 }
 

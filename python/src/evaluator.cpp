@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -64,14 +65,20 @@ class Evaluator {
 
   void update(std::size_t k, const Frame& frame, const std::optional<Pose>& T_world_camera) {
     FrameUpdate result;
+    double before_s = 0;
     {
       const nb::gil_scoped_release others_run;
       const std::scoped_lock alone(state_->updating);
-      search::SearchEvaluator& evaluator = state_->evaluator;
-      result = T_world_camera ? evaluator.update(k, frame, *T_world_camera) : evaluator.update(k, frame);
-      if (result.taken() && !(frame.time_s <= state_->newest_s)) {
-        state_->newest_s = frame.time_s;
+      before_s = state_->image_s[k];
+      if (frame.time_s < before_s) {
+        result = {UpdateResult::dropped, ""};
+      } else {
+        result = take(k, frame, T_world_camera);
       }
+    }
+    if (frame.time_s < before_s) {
+      fail("camera '", rig().cameras[k].id, "': an image of ", frame.time_s, " s comes after one of ", before_s,
+           " s; images come in the order of their times");
     }
     if (!result.taken()) {
       fail("camera '", rig().cameras[k].id, "': ", result.reason);
@@ -102,10 +109,27 @@ class Evaluator {
   }
 
  private:
+  [[nodiscard]] FrameUpdate take(std::size_t k, const Frame& frame,
+                                 const std::optional<Pose>& T_world_camera) noexcept {
+    search::SearchEvaluator& evaluator = state_->evaluator;
+    const FrameUpdate result =
+        T_world_camera ? evaluator.update(k, frame, *T_world_camera) : evaluator.update(k, frame);
+    if (result.taken()) {
+      state_->image_s[k] = frame.time_s;
+      if (!(frame.time_s <= state_->newest_s)) {
+        state_->newest_s = frame.time_s;
+      }
+    }
+    return result;
+  }
+
   struct State {
     State(const Rig& rig, const views::Settings& settings, const search::EvaluatorOptions& options)
-        : evaluator(rig, settings, options) {}
+        : evaluator(rig, settings, options) {
+      image_s.fill(-std::numeric_limits<double>::infinity());
+    }
     search::SearchEvaluator evaluator;
+    std::array<double, views::kMaxCameras> image_s{};  ///< exposure of each camera's newest; of none -infinity
     std::mutex updating;
     std::mutex asking;
     std::atomic<double> newest_s{std::numeric_limits<double>::quiet_NaN()};  ///< exposure; NaN: no image yet
@@ -144,6 +168,9 @@ void update_camera(Evaluator& self, const std::variant<std::int64_t, std::string
   Frame frame;
   frame.depth = depth_of(depth, seen_by.metres_per_unit);
   frame.time_s = time_s;
+  if (!std::isfinite(time_s)) {
+    fail("camera '", seen_by.id, "': time_s is ", time_s, "; it is the middle of the exposure, in seconds");
+  }
   const auto has_size = [&](std::size_t height, std::size_t width) {
     return height == static_cast<std::size_t>(seen_by.intrinsics.height_px) &&
            width == static_cast<std::size_t>(seen_by.intrinsics.width_px);
@@ -204,7 +231,9 @@ void add_evaluator(nb::module_& module) {
            "robot: images of where the padded robot begins and ends in each pixel (0: it is not there), float32 "
            "metres, and "
            "its padding, metres.\n"
-           "Raises Error where the image is not taken.")
+           "Raises Error where the image is not taken: of a time before the last one, too. Then the one before counts, "
+           "or "
+           "nothing of this camera.")
       .def("distances", &Evaluator::ask, "capsules"_a, "now_s"_a = nb::none(), nb::kw_only(), "reasons"_a = false,
            nb::sig("def distances(self, capsules: numpy.typing.ArrayLike, now_s: float | None = None, *, reasons: bool "
                    "= False) -> Distances"),

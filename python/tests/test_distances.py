@@ -108,11 +108,22 @@ def test_all_kinds_of_images_say_the_same():
         (np.zeros((WIDTH, HEIGHT), np.uint16).T, "ascontiguousarray"),
         (np.zeros((HEIGHT - 1, WIDTH), np.uint16), "shape"),
         (np.zeros((0, WIDTH), np.uint16), "shape"),
+        (np.full((HEIGHT, WIDTH), 2000, np.float32), "millimetres"),
     ],
 )
 def test_images_that_are_refused(image, words):
     with pytest.raises(dg.Error, match=words):
         evaluator().update("front", image, time_s=1.0)
+
+
+def test_images_come_in_the_order_of_their_times():
+    cell = evaluator()
+    cell.update("front", wall(1.9), time_s=1.0)
+    with pytest.raises(dg.Error, match="order"):
+        cell.update("front", wall(), time_s=0.9)
+    with pytest.raises(dg.Error, match="time_s"):
+        cell.update("front", wall(), time_s=float("nan"))
+    assert cell.distances([[0, 0, 1.7]]).distance_m[0] == pytest.approx(0.2, abs=TIGHT_M)
 
 
 @pytest.mark.parametrize("capsules", [[0, 0, 1], [[0, 0]], [[0] * 5], "words", [["a", 0, 0]], [[[0, 0, 1]]]])
