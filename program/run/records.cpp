@@ -40,6 +40,7 @@ void Records::event(const monitor::Event& event) {
   if (std::fputs(line.c_str(), log_.get()) < 0 || std::fflush(log_.get()) != 0) {
     warn(log_name_.string() + ": cannot be written: " + std::generic_category().message(errno) + "; the log ends here");
     log_.reset();
+    has_failed_ = true;
   }
 }
 
@@ -56,6 +57,7 @@ void Records::write_numbers(const monitor::CellAnswer& newest, bool has_ended) {
     std::filesystem::remove(numbers_, ignored);  // old ones would say for ever what was
     warn(std::string(error.what()) + "; no numbers for Prometheus any more");
     numbers_.clear();
+    has_failed_ = true;
   }
 }
 

@@ -23,6 +23,8 @@ class Records {
   void look(const monitor::CellAnswer& newest);
   /// The numbers as they are at the end: nobody answers any more.
   void end(const monitor::CellAnswer& newest);
+  /// A file could not be written, and its user was told.
+  [[nodiscard]] bool has_failed() const noexcept { return has_failed_; }
 
  private:
   void write_numbers(const monitor::CellAnswer& newest, bool has_ended);
@@ -33,6 +35,7 @@ class Records {
   std::unique_ptr<std::FILE, CloseStream> log_;  ///< null: none, or it failed
   std::filesystem::path numbers_;                ///< empty: none, or they failed
   double next_s_ = 0;
+  bool has_failed_ = false;
 };
 
 }  // namespace depthgrid::program

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
@@ -16,10 +17,10 @@
 #include "depthgrid/cell/cell_file.hpp"
 #include "depthgrid/core/printable_text.hpp"
 #include "depthgrid/monitor/cell_recording.hpp"
-#include "depthgrid/monitor/json_line.hpp"
 #include "depthgrid/monitor/open_cell.hpp"
 #include "depthgrid/sensors/clock.hpp"
 #include "program/interruption.hpp"
+#include "program/run/json_lines.hpp"
 #include "program/run/records.hpp"
 #include "program/run/run_text.hpp"
 #include "program/usage_error.hpp"
@@ -42,35 +43,6 @@ struct RunOptions {
   std::string record;
   std::optional<double> seconds;
   bool again = false;
-};
-
-struct CloseFile {
-  void operator()(std::FILE* file) const noexcept {
-    if (file != stdout) {
-      (void)std::fclose(file);
-    }
-  }
-};
-
-/// A line an answer. What the disk does not take is counted by the monitor as passed over.
-class JsonLines final : public monitor::Output {
- public:
-  JsonLines(const std::filesystem::path& file, monitor::Names names)
-      : file_(file.filename() == "-" ? stdout : std::fopen(file.c_str(), "we")), names_(std::move(names)) {
-    if (file_ == nullptr) {
-      fail(file.string(), ": cannot be written");
-    }
-  }
-  void take(const monitor::CellAnswer& answer) override {
-    const std::string line = monitor::json_line(answer, names_) + "\n";
-    if (std::fputs(line.c_str(), file_.get()) < 0) {
-      fail("a line was not written");
-    }
-  }
-
- private:
-  std::unique_ptr<std::FILE, CloseFile> file_;
-  monitor::Names names_;
 };
 
 /// The lines on the terminal: one that changes, or one a second; and one an event.
@@ -192,7 +164,9 @@ cell::Cell cell_of(const RunOptions& options, const std::optional<monitor::CellR
 
 /// What each is called.
 std::vector<std::string> add_outputs(const cell::Cell& cell, const cell::CellSetup& setup,
-                                     const std::shared_ptr<dds::Node>& ros2, monitor::Monitor& monitor) {
+                                     const std::shared_ptr<dds::Node>& ros2,
+                                     const std::shared_ptr<std::atomic<bool>>& lines_failed,
+                                     monitor::Monitor& monitor) {
   std::vector<std::string> outputs;
   if (cell.outputs.udp) {
     monitor.add(monitor::udp_output(*cell.outputs.udp));
@@ -203,7 +177,7 @@ std::vector<std::string> add_outputs(const cell::Cell& cell, const cell::CellSet
     outputs.push_back("ROS 2 node " + cell.ros2.node + ", domain " + std::to_string(cell.ros2.domain));
   }
   if (!cell.outputs.jsonl.empty()) {
-    monitor.add(std::make_unique<JsonLines>(cell.outputs.jsonl, monitor.names()));
+    monitor.add(json_lines(cell.outputs.jsonl, monitor.names(), lines_failed));
     outputs.push_back(cell.outputs.jsonl.string());
   }
   return outputs;
@@ -227,7 +201,8 @@ void run_cell(const RunOptions& options) {
   }
   const auto ros2 = monitor::ros2_node(cell);
   monitor::Monitor monitor(setup, monitor::monitor_settings(cell), monitor::make_sources(cell, setup, ros2));
-  const std::vector<std::string> outputs = add_outputs(cell, setup, ros2, monitor);
+  const auto lines_failed = std::make_shared<std::atomic<bool>>(false);
+  const std::vector<std::string> outputs = add_outputs(cell, setup, ros2, lines_failed, monitor);
   Records records(cell, setup, monitor);
   if (!cell.outputs.record.empty()) {  // last: where another output cannot be written no recording is left behind
     monitor.record(monitor::recorder(cell, setup, monitor.names()));
@@ -262,6 +237,9 @@ void run_cell(const RunOptions& options) {
   const auto recorded = monitor.report().recorded;
   if (recorded && recorded->failed) {
     fail("the recording is not whole, as was said above");
+  }
+  if (*lines_failed || records.has_failed()) {
+    fail("an output could not be written, as was said above");
   }
 }
 

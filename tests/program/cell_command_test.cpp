@@ -102,6 +102,21 @@ TEST(RunCommand, AnswersARecordingAndSumsUp) {
   EXPECT_TRUE(lines.find(R"("state":"beyond_rho")") != std::string::npos);
 }
 
+TEST(RunCommand, AFullDiskIsToldOnceAndIsNoSuccess) {
+  const TemporaryFolder folder;
+  write_wall(folder);
+  std::string cell = recorded_cell();
+  cell.replace(cell.find("answers.jsonl"), std::string("answers.jsonl").size(), "/dev/full");
+  (void)folder.write("cell.yaml", cell);
+  const CommandResult result = run_command("run cell.yaml --seconds 1", folder);
+  EXPECT_EQ(result.exit_code, 1);
+  const std::string told = "warning: /dev/full: a line was not written: No space left on device";
+  EXPECT_THAT(result.err, HasSubstr(told));
+  EXPECT_EQ(result.err.find(told), result.err.rfind(told));
+  EXPECT_THAT(result.err, HasSubstr("an output could not be written, as was said above"));
+  EXPECT_THAT(result.out, HasSubstr("answers, ")) << "it ran to its end";
+}
+
 TEST(RunCommand, RecordsAndWritesNothingOver) {
   const TemporaryFolder folder;
   write_wall(folder);
