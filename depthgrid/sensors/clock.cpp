@@ -25,7 +25,8 @@ std::int64_t nanoseconds_of(double time_s) noexcept {
 }
 
 double seconds_of(std::int64_t time_ns) noexcept {
-  return static_cast<double>(time_ns / kSecond_ns) + static_cast<double>(time_ns % kSecond_ns) * 1e-9;
+  const std::int64_t whole_s = time_ns / kSecond_ns;
+  return static_cast<double>(whole_s) + static_cast<double>(time_ns % kSecond_ns) * 1e-9;
 }
 
 bool wait_until(double time_s, double longest_s) noexcept {

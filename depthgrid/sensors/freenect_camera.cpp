@@ -31,6 +31,7 @@ struct Images {
 };
 
 /// libfreenect calls from within its function for events, which next() calls: so the thread knows whose image it is.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): libfreenect's log knows no user, its thread does
 thread_local Images* listening = nullptr;
 
 void on_depth(freenect::Device* /*device*/, void* /*pixels*/, std::uint32_t ticks) {

@@ -31,6 +31,8 @@ class FreenectCamera final : public DepthSource {
   /// With a library that is loaded already: for tests.
   FreenectCamera(FreenectSettings settings, std::shared_ptr<const FreenectLibrary> library);
   ~FreenectCamera() override;
+  FreenectCamera(const FreenectCamera&) = delete;
+  FreenectCamera& operator=(const FreenectCamera&) = delete;
 
   void open() override;
   void close() noexcept override;

@@ -34,6 +34,8 @@ class OpenniCamera final : public DepthSource {
   /// `library` null: the one that all cameras share.
   explicit OpenniCamera(OpenniSettings settings, std::shared_ptr<const OpenniLibrary> library = nullptr);
   ~OpenniCamera() override;
+  OpenniCamera(const OpenniCamera&) = delete;
+  OpenniCamera& operator=(const OpenniCamera&) = delete;
 
   void open() override;
   void close() noexcept override;
@@ -73,6 +75,8 @@ class OpenniRecording final : public DepthSource {
   OpenniRecording(std::filesystem::path file, bool mirrored, std::shared_ptr<const Playback> playback,
                   std::shared_ptr<const OpenniLibrary> library = nullptr);
   ~OpenniRecording() override;
+  OpenniRecording(const OpenniRecording&) = delete;
+  OpenniRecording& operator=(const OpenniRecording&) = delete;
 
   void open() override;
   void close() noexcept override;

@@ -39,8 +39,9 @@ OpenniLibrary::OpenniLibrary(const std::vector<std::string>& names) {
 
 std::shared_ptr<const OpenniLibrary> OpenniLibrary::shared() {
   static std::mutex mutex;
-  // Never destroyed: its drivers' threads may run when the program ends.
-  static auto* const library = new std::shared_ptr<const OpenniLibrary>();  // NOLINT(*owning-memory)
+  // Never destroyed: its drivers' threads may run when the program ends. The lock guards it.
+  // NOLINTNEXTLINE(*owning-memory, *avoid-non-const-global-variables): see above
+  static auto* const library = new std::shared_ptr<const OpenniLibrary>();
   const std::scoped_lock lock(mutex);
   if (*library == nullptr) {
     *library = std::make_shared<const OpenniLibrary>(std::vector<std::string>{"libOpenNI2.so.0", "libOpenNI2.so"});

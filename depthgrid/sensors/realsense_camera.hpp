@@ -48,6 +48,8 @@ class RealSenseCamera final : public DepthSource {
   /// With a library that is loaded already: for tests.
   RealSenseCamera(RealSenseSettings settings, std::shared_ptr<const rs2::Library> library);
   ~RealSenseCamera() override;
+  RealSenseCamera(const RealSenseCamera&) = delete;
+  RealSenseCamera& operator=(const RealSenseCamera&) = delete;
 
   void open() override;
   void close() noexcept override;

@@ -39,6 +39,8 @@ class RealSenseRecording final : public DepthSource {
   RealSenseRecording(std::filesystem::path file, std::shared_ptr<const Playback> playback, const ArrivalTimes& arrival,
                      std::shared_ptr<const rs2::Library> library = nullptr);
   ~RealSenseRecording() override;
+  RealSenseRecording(const RealSenseRecording&) = delete;
+  RealSenseRecording& operator=(const RealSenseRecording&) = delete;
 
   void open() override;
   void close() noexcept override;

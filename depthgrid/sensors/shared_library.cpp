@@ -33,7 +33,7 @@ SharedLibrary::SharedLibrary(std::span<const std::string> names, const std::stri
       name_ = name;
       return;
     }
-    const char* const error = ::dlerror();
+    const char* const error = ::dlerror();  // NOLINT(concurrency-mt-unsafe): of this thread, in glibc
     const std::string text = error != nullptr ? error : "";
     // That a name is not found says nothing; that a library is there and does not load is the reason.
     if (why.empty() && !text.starts_with(name + ": cannot open shared object file: No such file")) {
