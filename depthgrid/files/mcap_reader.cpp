@@ -1,16 +1,13 @@
 #include "depthgrid/files/mcap_reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "depthgrid/core/error.hpp"
 #include "depthgrid/core/printable_text.hpp"
-#include "depthgrid/core/whole_file.hpp"
-#include "depthgrid/files/mcap_compression.hpp"
+#include "depthgrid/files/mcap_bytes.hpp"
 #include "depthgrid/files/mcap_format.hpp"
 
 namespace depthgrid::files {
@@ -18,8 +15,6 @@ namespace {
 
 /// A summary is held in memory: of larger ones the file is read from its beginning.
 constexpr std::uint64_t kLargestSummary = std::uint64_t{1} << 26U;
-/// Chunks kept decompressed: images of one instant lie in neighbouring ones.
-constexpr std::size_t kChunksKept = 3;
 constexpr std::uint64_t kLargestMetadata = std::uint64_t{1} << 21U;
 constexpr std::size_t kMostMetadata = 100;
 
@@ -40,28 +35,13 @@ struct ChunkPlace {
   std::map<std::uint16_t, std::uint64_t> index_of;  ///< by channel; empty: it has to be looked through
 };
 
-struct Chunk {
-  std::uint64_t position = 0;
-  std::vector<std::byte> records;
-};
-
-struct Head {
-  std::uint8_t opcode = 0;
-  std::uint64_t length = 0;
-};
-
 }  // namespace
 
 class McapReader::File {
  public:
   using Metadata = std::map<std::string, std::map<std::string, std::string>>;
 
-  explicit File(const std::filesystem::path& file) : name_(file.string()), stream_(open_regular_file(file)) {
-    if (::fseeko(stream_.get(), 0, SEEK_END) != 0) {
-      fail(name_, ": cannot be read: its size is not known");
-    }
-    size_ = static_cast<std::uint64_t>(::ftello(stream_.get()));
-    check_magic();
+  explicit File(const std::filesystem::path& file) : bytes_(file), name_(bytes_.name()), size_(bytes_.size()) {
     if (!read_summary()) {
       scan();
     }
@@ -87,14 +67,14 @@ class McapReader::File {
                               (entry.in_chunk ? " + " + std::to_string(entry.offset) : std::string());
     std::span<const std::byte> bytes;
     if (entry.in_chunk) {
-      const Chunk& chunk = chunk_at(entry.position);
-      if (entry.offset > chunk.records.size()) {
-        fail(where, ": the index is broken: the chunk has ", chunk.records.size(), " bytes");
+      const std::vector<std::byte>& records = bytes_.chunk_at(entry.position);
+      if (entry.offset > records.size()) {
+        fail(where, ": the index is broken: the chunk has ", records.size(), " bytes");
       }
-      bytes = std::span<const std::byte>(chunk.records).subspan(static_cast<std::size_t>(entry.offset));
+      bytes = std::span<const std::byte>(records).subspan(static_cast<std::size_t>(entry.offset));
     } else {
-      const Head head = head_at(entry.position);
-      read_at(entry.position, kMcapRecordHead + checked_length(entry.position, head), record_);
+      const McapHead head = bytes_.head_at(entry.position);
+      bytes_.read_at(entry.position, kMcapRecordHead + bytes_.checked_length(entry.position, head), record_);
       bytes = record_;
     }
     const McapRecord record = take_mcap_record(bytes, where);
@@ -122,62 +102,6 @@ class McapReader::File {
 
  private:
   void note(const std::string& words) { damage_ += (damage_.empty() ? "" : "; ") + words; }
-
-  // The file.
-
-  void read_at(std::uint64_t position, std::uint64_t count, std::vector<std::byte>& bytes) {
-    bytes.resize(static_cast<std::size_t>(count));
-    if (::fseeko(stream_.get(), static_cast<off_t>(position), SEEK_SET) != 0 ||
-        std::fread(bytes.data(), 1, bytes.size(), stream_.get()) != bytes.size()) {
-      fail(name_, ": cannot be read: ", count, " bytes at byte ", position);
-    }
-  }
-
-  /// There must be such a head.
-  [[nodiscard]] Head head_at(std::uint64_t position) {
-    if (position > size_ || size_ - position < kMcapRecordHead) {
-      fail(name_, ": the index is broken: byte ", position, " of ", size_, " holds no record");
-    }
-    read_at(position, kMcapRecordHead, head_);
-    McapContents head(head_, name_);
-    Head found;
-    found.opcode = head.number<std::uint8_t>("opcode");
-    found.length = head.number<std::uint64_t>("length");
-    return found;
-  }
-
-  [[nodiscard]] bool fits(std::uint64_t position, const Head& head) const noexcept {
-    return head.length <= size_ - position - kMcapRecordHead;
-  }
-
-  /// Of a record that is taken into memory.
-  [[nodiscard]] std::uint64_t checked_length(std::uint64_t position, const Head& head) const {
-    if (!fits(position, head)) {
-      fail(name_, ": broken: the record at byte ", position, " has ", head.length, " bytes, the file ends before");
-    }
-    if (head.length > kLargestMcapChunk) {
-      fail(name_, ": the record at byte ", position, " has ", head.length, " bytes, must have at most ",
-           kLargestMcapChunk);
-    }
-    return head.length;
-  }
-
-  void check_magic() {
-    std::vector<std::byte> begin;
-    read_at(0, std::min<std::uint64_t>(size_, kMcapMagic.size()), begin);
-    const auto begins_with = [&](std::span<const std::uint8_t> bytes) {
-      return begin.size() >= bytes.size() && std::equal(bytes.begin(), bytes.end(), begin.begin(),
-                                                        [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
-    };
-    constexpr std::array<std::uint8_t, 4> kZstd{0x28, 0xB5, 0x2F, 0xFD};
-    if (begins_with(kZstd)) {
-      fail(name_, ": is a file compressed as a whole with zstd; decompress it first: unzstd ", name_);
-    }
-    if (!begins_with(kMcapMagic)) {
-      fail(name_,
-           ": is no MCAP file: ", begin.empty() ? "it is empty" : "its first bytes are not those of MCAP, version 0");
-    }
-  }
 
   // What is in it.
 
@@ -225,11 +149,11 @@ class McapReader::File {
   }
 
   /// The record whose head is known. Throws Error where it is broken.
-  void add_metadata(std::uint64_t at, const Head& head) {
+  void add_metadata(std::uint64_t at, const McapHead& head) {
     if (head.length > kLargestMetadata || metadata_.size() >= kMostMetadata) {
       return;
     }
-    read_at(at + kMcapRecordHead, checked_length(at, head), record_);
+    bytes_.read_at(at + kMcapRecordHead, bytes_.checked_length(at, head), record_);
     McapContents in(record_, name_);
     std::string name(in.text("name"));
     metadata_.try_emplace(std::move(name), in.texts("metadata"));
@@ -265,7 +189,7 @@ class McapReader::File {
     }
     const std::uint64_t footer_at = size_ - tail;
     std::vector<std::byte> end;
-    read_at(footer_at, tail, end);
+    bytes_.read_at(footer_at, tail, end);
     has_end_ =
         std::equal(kMcapMagic.begin(), kMcapMagic.end(), end.end() - static_cast<std::ptrdiff_t>(kMcapMagic.size()),
                    [](std::uint8_t a, std::byte b) { return std::byte{a} == b; });
@@ -288,7 +212,7 @@ class McapReader::File {
       fail("it begins at byte ", start, " of ", footer_at);
     }
     std::vector<std::byte> summary;
-    read_at(start, footer_at - start + kMcapRecordHead + kMcapFooterBytes - sizeof(crc), summary);
+    bytes_.read_at(start, footer_at - start + kMcapRecordHead + kMcapFooterBytes - sizeof(crc), summary);
     if (crc != 0 && mcap_crc(summary) != crc) {
       fail("its CRC is wrong");
     }
@@ -319,10 +243,10 @@ class McapReader::File {
           break;
       }
     }
-    const Head head = head_at(kMcapMagic.size());
+    const McapHead head = bytes_.head_at(kMcapMagic.size());
     if (head.opcode == static_cast<std::uint8_t>(McapOpcode::header)) {
       std::vector<std::byte> header;
-      read_at(kMcapMagic.size() + kMcapRecordHead, checked_length(kMcapMagic.size(), head), header);
+      bytes_.read_at(kMcapMagic.size() + kMcapRecordHead, bytes_.checked_length(kMcapMagic.size(), head), header);
       add_header(header);
     }
     for (const ChunkPlace& chunk : chunks_) {
@@ -358,7 +282,7 @@ class McapReader::File {
   void add_metadata_at(std::span<const std::byte> contents) {
     McapContents in(contents, "a metadata index");
     const auto at = in.number<std::uint64_t>("offset");
-    const Head head = head_at(at);
+    const McapHead head = bytes_.head_at(at);
     if (head.opcode != static_cast<std::uint8_t>(McapOpcode::metadata)) {
       fail("there are no metadata at byte ", at);
     }
@@ -388,8 +312,8 @@ class McapReader::File {
         note("it is cut: it ends at byte " + std::to_string(size_) + " without the mark of its end");
         return;
       }
-      const Head head = head_at(at);
-      if (head.opcode == 0 || !fits(at, head)) {
+      const McapHead head = bytes_.head_at(at);
+      if (head.opcode == 0 || !bytes_.fits(at, head)) {
         note("it is cut: it ends at byte " + std::to_string(size_) + " within the record at byte " +
              std::to_string(at) + "; what is before it is read");
         return;
@@ -406,12 +330,12 @@ class McapReader::File {
   }
 
   /// False at the end of the data.
-  bool scan_record(std::uint64_t at, const Head& head) {
+  bool scan_record(std::uint64_t at, const McapHead& head) {
     switch (static_cast<McapOpcode>(head.opcode)) {
       case McapOpcode::header:
       case McapOpcode::schema:
       case McapOpcode::channel: {
-        read_at(at + kMcapRecordHead, checked_length(at, head), record_);
+        bytes_.read_at(at + kMcapRecordHead, bytes_.checked_length(at, head), record_);
         take_description({.opcode = static_cast<McapOpcode>(head.opcode), .contents = record_});
         return true;
       }
@@ -421,7 +345,7 @@ class McapReader::File {
         }
         return true;
       case McapOpcode::chunk: {
-        std::span<const std::byte> records = chunk_at(at).records;
+        std::span<const std::byte> records = bytes_.chunk_at(at);
         while (!records.empty()) {
           take_description(take_mcap_record(records, name_ + ": chunk at byte " + std::to_string(at)));
         }
@@ -478,7 +402,7 @@ class McapReader::File {
       }
     }
     for (const std::uint64_t position : loose_) {
-      read_at(position + kMcapRecordHead, kMcapMessageHead, record_);
+      bytes_.read_at(position + kMcapRecordHead, kMcapMessageHead, record_);
       add_entry({.position = position}, record_, wanted, found);
     }
     return found;
@@ -496,7 +420,7 @@ class McapReader::File {
   }
 
   void look_through(std::uint64_t position, const std::set<std::uint16_t>& wanted, std::vector<McapEntry>& found) {
-    const std::vector<std::byte>& records = chunk_at(position).records;
+    const std::vector<std::byte>& records = bytes_.chunk_at(position);
     for (std::span<const std::byte> rest(records); !rest.empty();) {
       const std::uint64_t offset = records.size() - rest.size();
       const McapRecord record = take_mcap_record(rest, name_ + ": chunk at byte " + std::to_string(position));
@@ -512,11 +436,11 @@ class McapReader::File {
       if (!wanted.contains(channel)) {
         continue;
       }
-      const Head head = head_at(position);
+      const McapHead head = bytes_.head_at(position);
       if (head.opcode != static_cast<std::uint8_t>(McapOpcode::message_index)) {
         fail(name_, ": the index is broken: there is no message index at byte ", position);
       }
-      read_at(position + kMcapRecordHead, checked_length(position, head), record_);
+      bytes_.read_at(position + kMcapRecordHead, bytes_.checked_length(position, head), record_);
       McapContents in(record_, name_);
       if (in.number<std::uint16_t>("channel") != channel) {
         fail(name_, ": the index is broken: the message index at byte ", position, " is not of channel ", channel);
@@ -532,52 +456,13 @@ class McapReader::File {
               [](const McapEntry& a, const McapEntry& b) { return a.offset < b.offset; });
   }
 
-  // Chunks.
-
-  /// Decompressed, its CRC checked; valid until the next call.
-  [[nodiscard]] const Chunk& chunk_at(std::uint64_t position) {
-    const auto kept =
-        std::find_if(kept_.begin(), kept_.end(), [position](const Chunk& chunk) { return chunk.position == position; });
-    if (kept != kept_.end()) {
-      std::rotate(kept, kept + 1, kept_.end());  // the newest is last
-      return kept_.back();
-    }
-    const Head head = head_at(position);
-    const std::string where = name_ + ": chunk at byte " + std::to_string(position);
-    if (head.opcode != static_cast<std::uint8_t>(McapOpcode::chunk)) {
-      fail(name_, ": the index is broken: there is no chunk at byte ", position);
-    }
-    read_at(position + kMcapRecordHead, checked_length(position, head), raw_chunk_);
-    McapContents in(raw_chunk_, where);
-    static_cast<void>(in.bytes(2 * sizeof(std::uint64_t), "times"));
-    const auto size = in.number<std::uint64_t>("uncompressed_size");
-    const auto crc = in.number<std::uint32_t>("uncompressed_crc");
-    const std::string_view compression = in.text("compression");
-    const std::span<const std::byte> data = in.bytes(in.number<std::uint64_t>("records"), "records");
-    if (size > kLargestMcapChunk) {
-      fail(where, ": has ", size, " bytes decompressed, must have at most ", kLargestMcapChunk);
-    }
-    Chunk chunk;
-    if (kept_.size() == kChunksKept) {
-      chunk = std::move(kept_.front());  // its memory is used again
-      kept_.erase(kept_.begin());
-    }
-    chunk.position = position;
-    mcap_decompress(compression, data, static_cast<std::size_t>(size), chunk.records, where);
-    if (crc != 0 && mcap_crc(chunk.records) != crc) {
-      fail(where, ": its CRC is wrong: the file is damaged");
-    }
-    kept_.push_back(std::move(chunk));
-    return kept_.back();
-  }
-
-  std::string name_;
+  McapBytes bytes_;
+  const std::string& name_;   ///< of bytes_
+  const std::uint64_t size_;  ///< likewise
   std::string profile_;
   std::string damage_;
   Metadata metadata_;
   std::vector<McapChannel> channels_;
-  InputStream stream_;
-  std::uint64_t size_ = 0;
   bool by_index_ = false;
   bool has_counts_ = false;                        ///< there are statistics
   bool has_end_ = false;                           ///< the file's last bytes are those of an end
@@ -586,10 +471,7 @@ class McapReader::File {
   std::map<std::uint16_t, Channel> by_id_;
   std::vector<ChunkPlace> chunks_;
   std::vector<std::uint64_t> loose_;  ///< messages outside of chunks
-  std::vector<Chunk> kept_;
-  std::vector<std::byte> head_;
   std::vector<std::byte> record_;
-  std::vector<std::byte> raw_chunk_;
 };
 
 McapReader::McapReader(const std::filesystem::path& file) : file_(std::make_unique<File>(file)) {}
