@@ -2,26 +2,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <variant>
 
 #include "depthgrid/cell/cell_file.hpp"
+#include "depthgrid/core/number_parsing.hpp"
 #include "depthgrid/files/recording.hpp"
 #include "program/usage_error.hpp"
 #include "program/warning.hpp"
 
 namespace depthgrid::program {
 namespace {
-
-/// What comes back as the same number.
-std::string number_text(double value) {
-  std::array<char, 32> digits{};
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  return error == std::errc{} ? std::string(digits.data(), end) : std::string("nan");
-}
 
 std::string numbers_text(std::initializer_list<double> values) {
   std::string text;

@@ -8,15 +8,15 @@
 #include <locale>
 #include <sstream>
 
+#include "depthgrid/core/number_parsing.hpp"
+
 namespace depthgrid::report {
 
 std::string exact_text(double value) {
   if (std::isnan(value)) {
     return {};
   }
-  std::array<char, 32> buffer{};
-  auto* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
+  return number_text(value);
 }
 
 std::string micro_text(double value) {

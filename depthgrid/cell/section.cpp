@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -16,13 +15,6 @@ namespace {
 
 std::string at(const std::string& file, const YAML::Mark& mark) {
   return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1) + ": ";
-}
-
-/// As short as reads back the same.
-std::string number_text(double value) {
-  std::array<char, 32> digits{};
-  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  return error == std::errc{} ? std::string(digits.data(), end) : "?";
 }
 
 std::string with_hint(std::string_view hint) { return hint.empty() ? "" : ": " + std::string(hint); }

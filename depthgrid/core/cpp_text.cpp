@@ -1,8 +1,8 @@
 #include "depthgrid/core/cpp_text.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
+
+#include "depthgrid/core/number_parsing.hpp"
 
 namespace depthgrid {
 
@@ -13,8 +13,7 @@ std::string cpp_text(double value) {
   if (std::isinf(value)) {
     return std::string(value < 0 ? "-" : "") + "std::numeric_limits<double>::infinity()";
   }
-  std::array<char, 32> digits{};
-  const std::string text(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  const std::string text = number_text(value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;  // -0 would be an int without a sign
 }
 

@@ -1,8 +1,10 @@
 // Numbers in text, independent of the locale. Not part of the installed headers. Internal.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -27,6 +29,12 @@ std::optional<Number> parse_number(std::string_view text) noexcept {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size() ? std::optional<Number>(number) : std::nullopt;
+}
+
+/// The shortest text that parse_number() reads as the same double: "nan" and "inf" too.
+inline std::string number_text(double value) {
+  std::array<char, 32> digits{};  // enough for any double
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
 }  // namespace depthgrid

@@ -1,12 +1,11 @@
 #include "depthgrid/monitor/prometheus_text.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <string_view>
 #include <utility>
 
+#include "depthgrid/core/number_parsing.hpp"
 #include "depthgrid/sensors/ros2_clock.hpp"
 
 namespace depthgrid::monitor {
@@ -55,9 +54,7 @@ class MetricText {
     if (std::isinf(value)) {
       return value > 0 ? "+Inf" : "-Inf";
     }
-    std::array<char, 32> digits{};
-    const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-    return error == std::errc{} ? std::string(digits.data(), end) : std::string("NaN");
+    return number_text(value);
   }
 
   std::string name_;

@@ -19,6 +19,7 @@
 #include "depthgrid/sensors/playback.hpp"
 #include "depthgrid/sensors/shared_library.hpp"
 #include "files/temporary_folder.hpp"
+#include "sensors/wait_for_reading.hpp"
 #include "support/thrown_message.hpp"
 
 // OpenNI2 keeps memory each time that it begins, and unloads the drivers that could be named as an exception.
@@ -89,17 +90,6 @@ int number_of(const DepthView& depth) {
     }
   }
   return -1;
-}
-
-Reading next(DepthSource& source, DepthReading& reading) {
-  const double end_s = clock_now_s() + 20;
-  while (clock_now_s() < end_s) {
-    const Reading found = source.next(reading, 0.05);
-    if (found != Reading::nothing) {
-      return found;
-    }
-  }
-  return Reading::nothing;
 }
 
 TEST(OpenniLibrary, OneThatIsNotThereIsOneLine) {
@@ -196,7 +186,7 @@ TEST_F(Openni, TheOnlyOneIsReadToTheBit) {
   EXPECT_EQ(source->info().settings, "registration off, hole filter off, mirrored images are turned back here");
   int last = 0;
   for (int n = 0; n < 5; ++n) {
-    ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
     const int number = number_of(reading.depth);
     EXPECT_GT(number, last) << "each newer, none changed";
     if (n > 0) {
@@ -216,7 +206,7 @@ TEST_F(Openni, MirroringIsSwitchedOffWhereTheDeviceTakesIt) {
   source->open();
   EXPECT_EQ(source->info().settings, "registration off, hole filter off, not mirrored");
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   EXPECT_GT(number_of(reading.depth), 0);
 }
 
@@ -282,15 +272,15 @@ TEST_F(Openni, OneThatIsUnpluggedHasFailedAndComesBack) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   unplug_(0);
-  ASSERT_EQ(next(*source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
   EXPECT_EQ(source->reason(), "was unplugged");
   source->close();
   EXPECT_EQ(thrown_message([&] { source->open(); }), "no device of OpenNI2 is connected");
   there_(1, 0);
   source->open();
-  EXPECT_EQ(next(*source, reading), Reading::got);
+  EXPECT_EQ(wait_for_reading(*source, reading), Reading::got);
 }
 
 TEST_F(Openni, SilenceIsAFailure) {
@@ -298,7 +288,7 @@ TEST_F(Openni, SilenceIsAFailure) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
   EXPECT_EQ(source->reason(), "sends no image within 2 s");
 }
 
@@ -316,7 +306,7 @@ TEST_F(Openni, ARecordingGivesEveryImageToTheBitAndBeginsAnew) {
   int first = 0;
   double last_s = -1;
   Reading found = Reading::got;
-  while ((found = next(source, reading)) == Reading::got) {
+  while ((found = wait_for_reading(source, reading)) == Reading::got) {
     const int number = number_of(reading.depth);
     first = images == 0 ? number : first;
     EXPECT_EQ(number, first + images) << "none is left out, none changed";
@@ -331,7 +321,7 @@ TEST_F(Openni, ARecordingGivesEveryImageToTheBitAndBeginsAnew) {
   OpenniRecording repeats(file, true, again, library_);
   repeats.open();
   for (int n = 0; n < images + 2; ++n) {
-    ASSERT_EQ(next(repeats, reading), Reading::got) << repeats.reason();
+    ASSERT_EQ(wait_for_reading(repeats, reading), Reading::got) << repeats.reason();
     EXPECT_EQ(number_of(reading.depth), first + n % images);
     EXPECT_LE(reading.time_s, clock_now_s());
   }
@@ -355,7 +345,7 @@ TEST_F(Openni, ARecordingOfARealKinectIsReadToTheBit) {
   source.open();
   DepthReading reading;
   int images = 0;
-  while (next(source, reading) == Reading::got) {
+  while (wait_for_reading(source, reading) == Reading::got) {
     if (images == 0 || images == 11) {
       const files::Gray16Image image =
           files::read_png16(folder / "decoded" / (images == 0 ? "kinect_00.png" : "kinect_11.png"));

@@ -21,6 +21,7 @@
 #include "depthgrid/sensors/realsense_library.hpp"
 #include "depthgrid/sensors/realsense_recording.hpp"
 #include "files/temporary_folder.hpp"
+#include "sensors/wait_for_reading.hpp"
 #include "support/thrown_message.hpp"
 
 namespace depthgrid::sensors {
@@ -75,17 +76,6 @@ int number_of(const DepthView& depth) {
     return number;
   }
   return -1;
-}
-
-Reading next(DepthSource& source, DepthReading& reading) {
-  const double end_s = clock_now_s() + 20;
-  while (clock_now_s() < end_s) {
-    const Reading found = source.next(reading, 0.05);
-    if (found != Reading::nothing) {
-      return found;
-    }
-  }
-  return Reading::nothing;
 }
 
 /// The library, and a software device that takes the place of the connected ones.
@@ -171,7 +161,7 @@ TEST(RealRealSense, ImagesOfASoftwareDeviceComeToTheBit) {
     const double sent_s = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
     software().send(number, sent_s, rs2::kSystemTime);
     DepthReading reading;
-    ASSERT_EQ(next(camera, reading), Reading::got) << camera.reason();
+    ASSERT_EQ(wait_for_reading(camera, reading), Reading::got) << camera.reason();
     EXPECT_EQ(number_of(reading.depth), number);
     EXPECT_EQ(reading.skipped, 0);
     EXPECT_LT(reading.time_s, clock_now_s() - 0.029);
@@ -199,7 +189,7 @@ TEST(RealRealSense, ARecordingOfARealCameraIsReadToTheBit) {
   DepthReading reading;
   double first_s = 0;
   int images = 0;
-  while (next(source, reading) == Reading::got) {
+  while (wait_for_reading(source, reading) == Reading::got) {
     ASSERT_LT(images, 2);
     const files::Gray16Image image =
         files::read_png16(folder / "decoded" / (images == 0 ? "d435_0.png" : "d435_1.png"));

@@ -18,6 +18,7 @@
 #include "depthgrid/sensors/realsense_stream.hpp"
 #include "files/temporary_folder.hpp"
 #include "sensors/fake_realsense.hpp"
+#include "sensors/wait_for_reading.hpp"
 #include "support/thrown_message.hpp"
 
 namespace depthgrid::sensors {
@@ -58,17 +59,6 @@ class RealSense : public testing::Test {
       settings.arrival.time_uncertainty_s = rs2::kGlobalTimeError_s;
     }
     return std::make_unique<RealSenseCamera>(settings, library_);
-  }
-  /// Until something else than nothing.
-  static Reading next(DepthSource& source, DepthReading& reading) {
-    const double end_s = clock_now_s() + 20;
-    while (clock_now_s() < end_s) {
-      const Reading found = source.next(reading, 0.05);
-      if (found != Reading::nothing) {
-        return found;
-      }
-    }
-    return Reading::nothing;
   }
 
   std::shared_ptr<const rs2::Library> library_;
@@ -131,7 +121,7 @@ TEST_F(RealSense, TheOnlyOneIsOpenedSetUpAndRead) {
   double last_s = 0;
   long last = -1;  // NOLINT(*runtime-int)
   for (int n = 0; n < 5; ++n) {
-    ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
     const long number = number_of(reading.depth);  // NOLINT(*runtime-int)
     EXPECT_GT(number, last);
     EXPECT_EQ(reading.skipped, number - last - 1);
@@ -148,7 +138,7 @@ TEST_F(RealSense, GlobalTimeIsRefusedUnlessItsErrorIsDeclared) {
   RealSenseCamera source({}, library_);
   source.open();
   DepthReading reading;
-  ASSERT_EQ(next(source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(source, reading), Reading::failed);
   EXPECT_THAT(std::string(source.reason()),
               HasSubstr("is off by some milliseconds: margins: {time_uncertainty_s: 0.005}"));
 }
@@ -158,7 +148,7 @@ TEST_F(RealSense, AStampAfterTheArrivalIsNotBelieved) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   EXPECT_LT(reading.time_s, clock_now_s() - 0.0039) << "half the exposure";
 }
 
@@ -167,7 +157,7 @@ TEST_F(RealSense, ImagesBeforeGlobalTimeBeginsArePassedOver) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   EXPECT_EQ(source->info().clock, "the device, as librealsense2 converts it to this computer's");
   EXPECT_GE(reading.skipped, 20);
 }
@@ -177,7 +167,7 @@ TEST_F(RealSense, WhereNothingIsSaidOfTheExposureAWholePeriodIsTakenOff) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   EXPECT_LT(reading.time_s, clock_now_s() - 0.051) << "30 ms for the way, 12 ms for the stamp, less 33";
 }
 
@@ -185,13 +175,13 @@ TEST_F(RealSense, ASlowReaderGetsTheNewestImageAndWhatItMissedIsCounted) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   const long first = number_of(reading.depth);  // NOLINT(*runtime-int)
   const int sent = counts().sent;
   while (counts().sent < sent + 5) {
     (void)wait_until(clock_now_s() + 0.01, 1);
   }
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   EXPECT_GE(reading.skipped, 3) << "but for one that was being handed over";
   EXPECT_EQ(number_of(reading.depth), first + 1 + reading.skipped);
 }
@@ -283,7 +273,7 @@ TEST_F(RealSense, OneThatIsUnpluggedHasFailedAndComesBack) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   unplug_();
   ASSERT_EQ(source->next(reading, 0.1), Reading::failed);
   EXPECT_EQ(source->reason(), "was unplugged");
@@ -291,7 +281,7 @@ TEST_F(RealSense, OneThatIsUnpluggedHasFailedAndComesBack) {
   EXPECT_EQ(thrown_message([&] { source->open(); }), "no RealSense is connected");
   set_(&fake_);
   source->open();
-  EXPECT_EQ(next(*source, reading), Reading::got);
+  EXPECT_EQ(wait_for_reading(*source, reading), Reading::got);
 }
 
 TEST_F(RealSense, SilenceIsAFailure) {
@@ -300,7 +290,7 @@ TEST_F(RealSense, SilenceIsAFailure) {
   source->open();
   DepthReading reading;
   EXPECT_EQ(source->next(reading, 0.05), Reading::nothing);
-  ASSERT_EQ(next(*source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
   EXPECT_EQ(source->reason(), "sends no image within 2 s");
 }
 
@@ -314,7 +304,7 @@ TEST_F(RealSense, ErrorsOfTheLibraryAreTold) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
   EXPECT_EQ(source->reason(), "librealsense2: frame was\\nlost") << "one line";
 }
 
@@ -322,11 +312,11 @@ TEST_F(RealSense, AnotherSizeInMidRunIsAFailure) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   is([](FakeRealSense& fake) { fake.frame_width = 320; });
   Reading found = Reading::got;
   while (found == Reading::got) {
-    found = next(*source, reading);
+    found = wait_for_reading(*source, reading);
   }
   EXPECT_EQ(found, Reading::failed);
   EXPECT_THAT(std::string(source->reason()),
@@ -340,12 +330,12 @@ TEST_F(RealSense, AnExposureLongerThanDeclaredIsAFailure) {
   {
     const auto source = camera(settings);
     source->open();
-    EXPECT_EQ(next(*source, reading), Reading::got) << source->reason();
+    EXPECT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   }
   settings.longest_exposure_s = 0.007;
   const auto source = camera(settings);
   source->open();
-  ASSERT_EQ(next(*source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
   EXPECT_THAT(std::string(source->reason()), HasSubstr("exposes for 0.008 s"));
 }
 
@@ -355,7 +345,7 @@ TEST_F(RealSense, StampsOfTheArrivalAreRefusedUnlessTheirLagIsDeclared) {
   {
     const auto source = camera();
     source->open();
-    ASSERT_EQ(next(*source, reading), Reading::failed);
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
     EXPECT_THAT(std::string(source->reason()), HasSubstr("it stamps images when they arrive, up to 0.1 s after"));
   }
   RealSenseSettings settings;
@@ -363,20 +353,20 @@ TEST_F(RealSense, StampsOfTheArrivalAreRefusedUnlessTheirLagIsDeclared) {
   {
     const auto source = camera(settings);
     source->open();
-    ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
     EXPECT_EQ(source->info().clock, "this computer, when images arrive");
   }
   for (const double lag_s : {0.0, 0.03, 0.09}) {
     settings.arrival = {.lag_s = lag_s, .time_uncertainty_s = 0.009};
     const auto source = camera(settings);
     source->open();
-    ASSERT_EQ(next(*source, reading), Reading::failed) << "an image may have been under way for longer";
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed) << "an image may have been under way for longer";
     EXPECT_THAT(std::string(source->reason()), HasSubstr("must be 0.1 together; the cell says "));
   }
   settings.arrival = {.lag_s = 0.09, .time_uncertainty_s = 0.01};
   const auto source = camera(settings);
   source->open();
-  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   EXPECT_LT(reading.time_s, clock_now_s() - 0.089) << "the lag is taken off";
 }
 
@@ -386,7 +376,7 @@ TEST_F(RealSense, TheDevicesOwnClockIsFollowedByTheArrivals) {
   {
     const auto source = camera();
     source->open();
-    ASSERT_EQ(next(*source, reading), Reading::failed);
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
     EXPECT_THAT(std::string(source->reason()),
                 HasSubstr("the device's clock is known here by the images' arrival alone"));
   }
@@ -394,12 +384,12 @@ TEST_F(RealSense, TheDevicesOwnClockIsFollowedByTheArrivals) {
   settings.arrival = {.lag_s = 0.03, .time_uncertainty_s = 0.07};
   const auto source = camera(settings);
   source->open();
-  ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   EXPECT_GE(reading.skipped, DeviceClock::kImages - 1) << "the first ones only say how the clocks stand";
   EXPECT_EQ(source->info().clock, "the device, by the images' arrival");
   is([](FakeRealSense& fake) { fake.stall_s = 0.3; });
   for (int n = 0; n < 3; ++n) {  // the first of them may have been under way before
-    ASSERT_EQ(next(*source, reading), Reading::got) << source->reason();
+    ASSERT_EQ(wait_for_reading(*source, reading), Reading::got) << source->reason();
   }
   EXPECT_LT(reading.time_s, clock_now_s() - 0.3) << "an image that is late does not look newer";
 }
@@ -408,18 +398,18 @@ TEST_F(RealSense, AClockThatChangesInMidRunIsAFailure) {
   const auto source = camera();
   source->open();
   DepthReading reading;
-  ASSERT_EQ(next(*source, reading), Reading::got);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::got);
   is([](FakeRealSense& fake) { fake.domain = rs2::kSystemTime; });
   Reading found = Reading::got;
   while (found == Reading::got) {
-    found = next(*source, reading);
+    found = wait_for_reading(*source, reading);
   }
   EXPECT_EQ(found, Reading::failed);
   EXPECT_THAT(std::string(source->reason()), HasSubstr("another clock in mid-run"));
   source->close();
   is([](FakeRealSense& fake) { fake.domain = 7; });
   source->open();
-  ASSERT_EQ(next(*source, reading), Reading::failed);
+  ASSERT_EQ(wait_for_reading(*source, reading), Reading::failed);
   EXPECT_THAT(std::string(source->reason()), HasSubstr("a clock that is not known here (domain 7)"));
 }
 
@@ -441,13 +431,13 @@ TEST_F(RealSense, TimesOfARecordingAreByTheRulesOfACamera) {
   {
     RealSenseRecording source(file, playback, late, library_);
     source.open();
-    ASSERT_EQ(next(source, reading), Reading::got) << source.reason();
+    ASSERT_EQ(wait_for_reading(source, reading), Reading::got) << source.reason();
     EXPECT_NEAR(reading.time_s, playback->clock_s(1.7e9 + 100 + 0.03 - 0.1, 0), 1e-3);
   }
   {
     RealSenseRecording source(file, playback, {}, library_);
     source.open();
-    EXPECT_EQ(next(source, reading), Reading::failed);
+    EXPECT_EQ(wait_for_reading(source, reading), Reading::failed);
   }
   is([](FakeRealSense& fake) {
     fake.domain = rs2::kHardwareClock;
@@ -472,12 +462,12 @@ TEST_F(RealSense, ARecordingGivesEveryImageInItsOrder) {
   EXPECT_EQ(source.next(reading, 0), Reading::failed);
   source.open();
   for (int n = 0; n < 30; ++n) {
-    ASSERT_EQ(next(source, reading), Reading::got) << source.reason();
+    ASSERT_EQ(wait_for_reading(source, reading), Reading::got) << source.reason();
     EXPECT_EQ(number_of(reading.depth), n);
     EXPECT_NEAR(reading.time_s, 100 + n / 30.0, 1e-3) << "the middle of the exposure";
   }
-  EXPECT_EQ(next(source, reading), Reading::ended);
-  EXPECT_EQ(next(source, reading), Reading::ended);
+  EXPECT_EQ(wait_for_reading(source, reading), Reading::ended);
+  EXPECT_EQ(wait_for_reading(source, reading), Reading::ended);
   EXPECT_THAT(thrown_message([&] { (void)realsense_span(folder / "none.bag", kDeclared, library_); }),
               HasSubstr("none.bag: is no file"));
   std::ofstream(folder / "other.bag") << "ROSBAG\n";
@@ -548,7 +538,7 @@ TEST_F(RealSense, ARecordingKeepsItsPaceAndBeginsAnew) {
   std::int64_t images = 0;
   double last_s = 0;
   while (images < 12) {
-    ASSERT_EQ(next(source, reading), Reading::got) << source.reason();
+    ASSERT_EQ(wait_for_reading(source, reading), Reading::got) << source.reason();
     EXPECT_LE(reading.time_s, clock_now_s());
     EXPECT_GT(reading.time_s, last_s);
     EXPECT_EQ(number_of(reading.depth), (images + reading.skipped) % 6);
